@@ -1,0 +1,74 @@
+#pragma once
+// What the runtime knows of a compiled energy: this plain C struct, found in a kernel library by the symbol
+// `ergon_kernel`. Nothing else crosses the border between compiler and runtime.
+//
+// A kernel is a function of q = (weights (x) I3) x: `q_vectors` 3-vectors, each a weighted sum of the stencil's points.
+// For a stencil energy the weights are constants found by the frontier pass; for a density q is F, column by column,
+// and the weights are the gradients of the element's shape functions at a quadrature point, which the runtime supplies.
+// The chain to points and the projection of the Hessian are the runtime's.
+//
+// Lane layout: every array below is [component][lanes], aligned to 64 bytes. The library is built for one width.
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define ERGON_KERNEL_ABI 1
+
+enum ErgonRole { ERGON_PARAM = 0, ERGON_REST = 1, ERGON_LAG = 2 };
+
+typedef struct ErgonInput {
+  const char* name;
+  int role; /* ErgonRole */
+  int rows;
+  int cols;
+  int offset; /* first component in `params` (ERGON_PARAM) or in the raw element data (rest and lag) */
+} ErgonInput;
+
+typedef struct ErgonKernel {
+  int abi;
+  int lanes;
+  const char* energy;    /* name in the energy file */
+  const char* case_name; /* "" when the energy has no cases */
+  const char* geometry;  /* "solid", "membrane", "line", or the stencil: "point", "edge", ... */
+  int density;           /* 1: weights come from elements; value is per rest volume (area, length) */
+  int points;            /* points of the stencil; 0 for a density */
+  int q_vectors;         /* 3-vectors in q: 3 for a solid's F, 2 for a membrane's */
+  const double* weights; /* stencil: [q_vectors][points], row by row; 0 for a density */
+
+  int n_inputs;
+  const ErgonInput* inputs;
+  int params;    /* doubles in `params` */
+  int raw;       /* doubles of raw rest and lag data per element */
+  int uniforms;  /* doubles that prepare_uniforms writes */
+  int elements;  /* doubles per lane that prepare_elements writes */
+  int requires_; /* number of `require` margins */
+  int actives;   /* number of `active` margins */
+
+  int constant_gradient; /* the gradient does not depend on q */
+  int constant_hessian;  /* the Hessian does not depend on q */
+  int zero_hessian;
+  int psd_hessian; /* positive semi-definite by construction: no projection needed */
+
+  int operations_value; /* per lane, counted on the graph */
+  int operations_gradient;
+  int operations_hessian;
+  int divisions_hessian;
+
+  /* Once per material: params[params] -> u[uniforms]. */
+  void (*prepare_uniforms)(const double* params, double* u);
+  /* When rest, lag or params change: raw[raw][lanes] -> e[elements][lanes]. */
+  void (*prepare_elements)(const double* raw, const double* u, double* e);
+  /* Margins, positive where the condition holds: active[actives][lanes], require[requires_][lanes]. */
+  void (*conditions)(const double* q, const double* e, const double* u, double* active, double* require);
+  /* value[lanes]; require[lanes] is the smallest margin (+inf when there is none). */
+  void (*value)(const double* q, const double* e, const double* u, double* value, double* require);
+  /* gradient[3*q_vectors][lanes] */
+  void (*gradient)(const double* q, const double* e, const double* u, double* value, double* gradient);
+  /* hessian: lower triangle packed by rows, entry (i, j <= i) at i*(i+1)/2 + j */
+  void (*hessian)(const double* q, const double* e, const double* u, double* value, double* gradient, double* hessian);
+} ErgonKernel;
+
+#ifdef __cplusplus
+}
+#endif

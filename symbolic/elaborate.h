@@ -1,0 +1,46 @@
+#pragma once
+// The meaning of an energy, written once and interpreted in any algebra: a graph being built, exact symbols, 50-digit
+// numbers with derivatives, plain doubles. Lets are elaborated once each, in their order, and shared.
+//
+// An algebra A supplies
+//   using Scalar = ...;                              copyable
+//   Scalar number(const std::string& decimal);       an exact literal: "2", "0.5", "1e-24"
+//   Scalar add(a, b), subtract(a, b), multiply(a, b), divide(a, b), negate(a);
+//   Scalar power(a, long num, long den);             constant rational exponent in lowest terms, den > 0
+//   Scalar power(a, b);                              any other exponent
+//   Scalar call(Function f, const std::vector<Scalar>& arguments);
+//   Scalar input(const Symbol& symbol, int component);          column by column
+//   void named(const std::string& let, int component, int size, const Scalar& value);   a let's component was formed
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "symbolic/energy.h"
+
+namespace ergon {
+
+// Scalar functions that every algebra knows.
+enum class Function { sqrt, log, exp, log1p, expm1, sin, cos, tan, asin, acos, atan, atan2, abs, min, max };
+
+template <class S>
+struct Tensor {
+  Shape shape;
+  std::vector<S> at;  // column by column
+  const S& operator()(int row, int col = 0) const { return at[static_cast<size_t>(col * shape.rows + row)]; }
+};
+
+template <class S>
+struct Elaborated {
+  S value;
+  std::vector<S> active;   // margins: positive where the condition holds
+  std::vector<S> require;  // margins
+};
+
+// `case_name` must be one of energy.cases, or "" when the energy has none.
+template <class A>
+Elaborated<typename A::Scalar> elaborate(const Energy& energy, const std::string& case_name, A& algebra);
+
+}  // namespace ergon
+
+#include "symbolic/elaborate_impl.h"

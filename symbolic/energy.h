@@ -1,0 +1,84 @@
+#pragma once
+// One energy: what an `.energy` file reads into, and what a C++ program builds for itself.
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "symbolic/expression.h"
+
+namespace ergon {
+
+// What a declared name is, and with it how long its value lasts.
+enum class Role {
+  dof,    // differentiated: the points of a stencil, or F of a density
+  param,  // one value per material
+  rest,   // per-stencil data of the undeformed state, constant over a run
+  lag     // per-stencil data held constant while differentiating, renewed between solves
+};
+
+struct Range {
+  double lower = -std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();
+  bool lower_open = true;
+  bool upper_open = true;
+  bool contains(double v) const {
+    return (lower_open ? v > lower : v >= lower) && (upper_open ? v < upper : v <= upper);
+  }
+};
+
+// "(0, inf)"
+std::string to_string(const Range& range);
+
+struct Symbol {
+  std::string name;
+  Role role = Role::param;
+  Shape shape;
+  Unit unit;
+  Range range;
+  std::string help;
+  Place place;
+};
+
+struct Let {
+  std::string name;
+  std::string case_name;  // "" when it holds in every case
+  ExpressionPtr expression;
+  Place place;
+};
+
+// left < right (strict); written the other way round it is stored swapped. Its margin is right - left.
+struct Condition {
+  ExpressionPtr left;
+  ExpressionPtr right;
+  Place place;
+};
+
+struct Energy {
+  enum class Kind { density, stencil };
+  Kind kind = Kind::density;
+  std::string name;
+  std::string
+      geometry;  // density: "solid" (F 3x3), "membrane" (3x2), "line" (3x1); stencil: "point", "edge", "hinge" ...
+  std::string summary;  // the comment lines above the header
+  std::string cite;
+  std::vector<Symbol> symbols;  // in order of declaration; a density's "F" (Role::dof) comes first
+  std::vector<Let> lets;        // in order; a case's lets stand where they were written
+  std::vector<std::string> cases;
+  std::vector<Condition> active;  // whoever builds the list of stencils keeps those where all hold
+  std::vector<Condition> require;
+  ExpressionPtr value;
+  std::string text;  // the file as read
+  std::string file;
+
+  const Symbol* find(std::string_view symbol_name) const;
+  std::vector<const Symbol*> with_role(Role role) const;
+};
+
+// Reads and analyses (names, shapes, units, ranges) one energy. Throws SourceError at the exact place.
+Energy parse_energy(std::string_view text, const std::string& file);
+Energy read_energy(const std::string& file);
+
+}  // namespace ergon
