@@ -70,7 +70,8 @@ struct Energy {
   std::vector<Condition> active;  // whoever builds the list of stencils keeps those where all hold
   std::vector<Condition> require;
   ExpressionPtr value;
-  std::string text;  // the file as read
+  bool fixed_frame = false;  // `frame fixed`: the author states that it is not invariant under rotation
+  std::string text;          // the file as read
   std::string file;
 
   const Symbol* find(std::string_view symbol_name) const;
