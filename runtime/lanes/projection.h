@@ -1,0 +1,2 @@
+#pragma once
+// Projection of small symmetric matrices, one per lane. Included only by files in runtime/lanes.

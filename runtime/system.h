@@ -1,0 +1,51 @@
+#pragma once
+// The sum of all potentials over one set of vertices: value, gradient and assembled Hessian, over all cores. Results do
+// not depend on the number of threads: stencils are added colour by colour, in an order fixed when the pattern is
+// built.
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "runtime/block_matrix.h"
+#include "runtime/potential.h"
+
+namespace ergon {
+
+struct Evaluation {
+  double value = 0;                  // J
+  std::vector<double> by_potential;  // J, in order of addition
+  double require = 0;    // smallest margin of all `require` conditions; not positive: the state is outside the domain
+  std::string violated;  // the potential with that margin, when it is not positive
+  long indefinite = 0;   // quadrature points or stencils whose Hessian was changed by projection
+};
+
+class System {
+ public:
+  explicit System(int vertices);
+
+  int vertices() const;
+  // Fixed vertices carry no degree of freedom: their rows and columns are left out of the matrix.
+  void set_fixed(const std::vector<char>& fixed);
+  int free_vertices() const;
+  int block_of(int vertex) const;  // block row of a vertex, -1 when fixed
+
+  int add(Potential potential);  // its index in by_potential
+  Potential& potential(int index);
+  int potential_count() const;
+
+  Evaluation value(const Eigen::Matrix3Xd& x);
+  // gradient: 3 x vertices, N; columns of fixed vertices hold the reaction (the full gradient)
+  Evaluation gradient(const Eigen::Matrix3Xd& x, Eigen::Matrix3Xd& gradient);
+  // The matrix keeps its pattern from call to call; it is built at the first call and again only when a stencil list
+  // brings a coupling that is not in it.
+  Evaluation hessian(const Eigen::Matrix3Xd& x, Projection projection, Eigen::Matrix3Xd& gradient, BlockMatrix& matrix);
+
+  // What is not computed and why, one line each ("inertia: Hessian is constant, assembled once").
+  std::vector<std::string> skipped() const;
+
+  struct Impl;
+  std::shared_ptr<Impl> impl;
+};
+
+}  // namespace ergon
