@@ -8,7 +8,7 @@
 
 namespace ergon {
 
-// Node order is that of VTK.
+// Node order is that of VTK. The reference element is the unit simplex or, for Hex8, the unit cube [0, 1]^3.
 enum class Element { point, edge2, tri3, tet4, tet10, hex8 };
 
 int nodes_of(Element element);
@@ -23,7 +23,9 @@ struct QuadratureRule {
   int exactness = 0;                    // degree of polynomials integrated exactly
 };
 
-// The rule used for energies on this element unless another is asked for.
+// The rule used for energies on this element unless another is asked for: the centroid (degree 1) for Edge2, Tri3 and
+// Tet4; for Tet10 the four points of Hammer and Stroud 1956, Numerical Integration Over Simplices, MTAC 10 (degree 2);
+// for Hex8 2x2x2 Gauss points (degree 3).
 QuadratureRule default_quadrature(Element element);
 
 // nodes x dimension: gradients of the shape functions at a reference point; and their values.
