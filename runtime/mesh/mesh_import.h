@@ -1,0 +1,36 @@
+#pragma once
+// Meshes from files, and solids from surfaces. Every result is finite, names only its own vertices, and is the same
+// for the same input. Gmsh works behind these functions; it keeps global state, so calls wait for one another.
+
+#include <string>
+
+#include "runtime/mesh/mesh.h"
+
+namespace ergon {
+
+// Reads a Gmsh .msh file (any version Gmsh reads). Cells of the highest dimension present are kept: Tet4, Tet10, Hex8,
+// or Tri3 when there are no solids. Vertices of no kept cell are left out; the others stay in the order of their tags.
+// Throws InputError: missing file, unknown format, no cells, more than one kind of cell, cells of an unknown kind, a
+// coordinate that is not finite, or what Gmsh itself reports.
+Mesh read_mesh(const std::string& path);
+
+// Reads a triangle surface from .obj, .stl (text or binary) or .ply (text or binary). Vertices with equal coordinates
+// are merged, those of no triangle left out, quadrilaterals are cut in two. The surface need not be closed.
+// Throws InputError with the line (or the number of the record in a binary file).
+Mesh read_surface(const std::string& path);
+
+struct FillOptions {
+  // No edge inside the solid is meant to be longer than this, m; 0: sizes are continued from the surface.
+  double max_edge_length = 0;
+  // Rounds of mesh improvement after filling. More rounds cost time and remove flatter tetrahedra.
+  int optimization_rounds = 1;
+};
+
+// Fills a closed triangle surface with tetrahedra. The surface's triangles are kept: its vertices keep their numbers and
+// come first. Several closed parts may lie beside or inside one another; a part inside another is a cavity, one inside
+// a cavity is solid again. Triangles may be oriented either way.
+// Throws InputError: empty, open or branching surface (how many edges, one of them with coordinates), triangles that
+// cut one another, or what Gmsh itself reports.
+Mesh fill_surface(const Mesh& surface, const FillOptions& options = {});
+
+}  // namespace ergon

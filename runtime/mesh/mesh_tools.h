@@ -1,0 +1,59 @@
+#pragma once
+// What a mesh at rest tells: its boundary, whether it is sound, volumes and masses; and copies of it that are moved or
+// reordered. All functions leave their argument as it is.
+
+#include <array>
+#include <vector>
+
+#include "runtime/mesh/mesh.h"
+
+namespace ergon {
+
+// The boundary of a solid mesh as triangles of its own vertices, seen counter-clockwise from outside: faces that belong
+// to one cell only, in the order of their cells. A Hex8 face gives two triangles (its diagonal starts at the face's
+// lowest vertex number), a Tet10 face four, through its mid-edge nodes. A Tri3 mesh gives its own triangles.
+// Throws InputError for points and edges.
+std::vector<std::array<int, 3>> surface_triangles(const Mesh& mesh);
+
+// Throws InputError unless every coordinate is finite, every cell names existing and different vertices, and every cell
+// is positively oriented and not flat: its volume factor at quadrature points and nodes exceeds 1e-12 of the cube
+// (square, length) of its extent. The message names the first such cell, its volume and the number of them.
+void check_mesh(const Mesh& mesh);
+
+// Volume of each cell with the element's default quadrature: m^3 for solids, m^2 for triangles, m for edges, 1 for
+// points. Solids are signed: negative when inverted.
+std::vector<double> rest_volumes(const Mesh& mesh);
+
+// Mass of each vertex, kg. `density` is in kg/m^3 for solids, kg/m^2 for triangles, kg/m for edges, kg for points.
+// Row sums of the consistent mass matrix; for Tet10, whose row sums are negative at the corners, the diagonal of the
+// straight-sided element scaled to keep its mass (Hinton, Rock, Zienkiewicz 1976, A note on mass lumping and related
+// processes in the finite element method, Earthquake Engineering and Structural Dynamics 4: corners 1/36, mid-edges
+// 4/27). Throws InputError unless the density is positive and finite.
+Eigen::VectorXd lumped_masses(const Mesh& mesh, double density);
+
+// The same mesh with its cells along a Hilbert curve through their centres and its vertices in order of first use
+// (vertices of no cell last), so that what is near in space is near in memory.
+struct ReorderedMesh {
+  Mesh mesh;
+  std::vector<int> cell_from;    // new cell i was cell_from[i]
+  std::vector<int> vertex_from;  // new vertex i was vertex_from[i]
+};
+ReorderedMesh spatial_order(const Mesh& mesh);
+
+// X -> rotation * (scale * X) + translation.
+struct Transform {
+  double scale = 1;
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  // of any length but zero
+  double angle = 0;                                 // rad
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();  // m
+};
+// Throws InputError unless scale is positive, the axis is not zero and all numbers are finite.
+Mesh transformed(const Mesh& mesh, const Transform& transform);
+
+// Vertices with lower <= X <= upper in every coordinate, in ascending order.
+std::vector<int> vertices_in_box(const Mesh& mesh, const Eigen::Vector3d& lower, const Eigen::Vector3d& upper);
+
+// Smallest and largest coordinates, as columns 0 and 1. The mesh must have a vertex.
+Eigen::Matrix<double, 3, 2> bounding_box(const Mesh& mesh);
+
+}  // namespace ergon
