@@ -1,0 +1,99 @@
+#pragma once
+// Contact of vertices with half-spaces dot(n, x) < height: the active sets of the barrier and of lagged friction, the
+// largest step that does not reach the plane, and the barrier's stiffness.
+// Source: Li et al. 2020, Incremental Potential Contact, TOG 39(4): barrier Eq. 6, friction Sec. 5.
+
+#include <Eigen/Core>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "runtime/contact/contact.h"
+#include "runtime/system.h"
+
+namespace ergon {
+
+struct Ground {
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitY();  // pointing out of the ground; any length but zero
+  double height = 0;                                  // m, dot(normal, x) on the plane, for the unit normal
+  double dhat = 1e-3;                                 // m, activation distance
+  double friction = 0;                                // coefficient mu
+  double epsv = 1e-3;                                 // m/s, sliding speed below which friction is static
+  double stiffness = 0;                               // N/m, of the barrier; 0: chosen from the scene's forces
+};
+
+// The laws, loaded by whoever builds the scene: params n, height, dhat and lag kappa; params n, mu, epsv and lags
+// force, dt, xlag. The friction kernel may be empty when no ground has friction.
+struct GroundLaws {
+  Kernel barrier;
+  Kernel friction;
+};
+
+class GroundContact : public Contact {
+ public:
+  // Adds one barrier potential per ground to the system, and one friction potential per ground with friction > 0.
+  // `vertices`: those that may touch (the surface). X: 3 x vertices of the system, m. mass: kg, per vertex of the
+  // system. gravity: m/s^2. Throws InputError for a normal of length zero and for parameters out of range.
+  GroundContact(System& system, std::vector<Ground> grounds, const GroundLaws& laws, std::vector<int> vertices,
+                const Eigen::Matrix3Xd& X, const Eigen::VectorXd& mass, const Eigen::Vector3d& gravity);
+
+  // Throws InputError when a free vertex is on or below a ground: the deepest one, its depth, and the remedy.
+  void check_start(const Eigen::Matrix3Xd& x) const;
+
+  // Before the solve of a step of dt seconds from (x, v): chooses the barrier's stiffness where it is still open.
+  void begin_step(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& v, double dt);
+
+  // Normal forces at x (N) become those of friction, which opposes the displacement from xlag within dt. Returns the
+  // sum of the changes of force over the sum of forces: 0 when nothing changed.
+  double lag_friction(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& xlag, double dt);
+
+  void set_active(const Eigen::Matrix3Xd& x) override;
+  // Every vertex keeps at least a tenth of its present gap.
+  double largest_step(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& direction) override;
+  // Doubles a stiffness that was not fixed when the smallest gap has come near the rounding of positions.
+  bool adapt(const Eigen::Matrix3Xd& x) override;
+
+  bool has_friction() const;
+  int active_count() const;                              // vertex-ground pairs within dhat at the last set_active
+  int friction_count() const;                            // pairs with a friction force
+  double smallest_gap(const Eigen::Matrix3Xd& x) const;  // m, over all free vertices and grounds; +inf without any
+  double stiffness(int ground) const;                    // N/m; 0 while open
+  // J: barrier energy that changes of stiffness have added to the state at the start of the step, since begin_step.
+  double energy_added() const;
+  // Normal force per active pair at x: vertex, ground, N.
+  struct Force {
+    int vertex;
+    int ground;
+    double newton;
+  };
+  std::vector<Force> forces(const Eigen::Matrix3Xd& x) const;
+
+ private:
+  struct Side {  // one ground with its potentials and present state
+    Ground ground;
+    int barrier = -1;
+    int friction = -1;
+    double kappa = 0;
+    double start_sum = 0;                                       // m^2, barrier/kappa summed at the start of the step
+    double last_gap = std::numeric_limits<double>::infinity();  // m, smallest at the last adapt
+    std::vector<int> active;
+    std::vector<int> sticking;           // vertices with friction
+    std::vector<double> friction_force;  // N, of these
+  };
+  double gap(const Side& side, const Eigen::Matrix3Xd& x, int vertex) const;
+  void set_barrier_stencils(Side& side);
+
+  System* system_;
+  std::vector<Side> sides_;
+  std::vector<int> vertices_;  // free ones that may touch
+  Eigen::Matrix3Xd X_;
+  double free_mass_ = 0;  // kg
+  Eigen::Vector3d gravity_;
+  double energy_added_ = 0;
+};
+
+// b(gap)/kappa of ground_barrier.energy and its derivative, m^2 and m; zero at and beyond dhat.
+double barrier_value(double gap, double dhat);
+double barrier_slope(double gap, double dhat);
+
+}  // namespace ergon

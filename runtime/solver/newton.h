@@ -1,0 +1,74 @@
+#pragma once
+// Projected Newton with a back-tracking line search: minimises the energy of a System over its free vertices. It
+// establishes that the energy never rises from iterate to iterate, that no iterate leaves the domain of any potential,
+// and that none passes through a contact.
+// Source: Li et al. 2020, Incremental Potential Contact, TOG 39(4), Algorithm 1.
+
+#include <Eigen/Core>
+#include <string>
+
+#include "runtime/contact/contact.h"
+#include "runtime/solver/linear_solver.h"
+#include "runtime/system.h"
+
+namespace ergon {
+
+struct NewtonOptions {
+  // Converged when the largest component of the Newton step, divided by dt, is at most this; the step is still taken.
+  double tolerance = 1e-4;  // m/s
+  double dt = 1;            // s; 1 makes the tolerance one of displacement, for statics
+  int max_iterations = 200;
+  Projection projection = Projection::clamp;
+  double sufficient_decrease = 1e-4;  // of the decrease that the gradient predicts
+  int max_halvings = 60;
+  // N/m, per vertex of the system: a lower bound of the Hessian's eigenvalues there (mass/dt^2). It bounds the next
+  // Newton step without solving for it, which saves the last factorisation. Empty: not used. Valid with projection
+  // only.
+  Eigen::VectorXd curvature;
+};
+
+// Seconds by part.
+struct NewtonSeconds {
+  double evaluate = 0;  // energies, derivatives and assembly
+  double factor = 0;    // analysis included
+  double solve = 0;
+  double line_search = 0;  // energies and gradients of trial states
+  double contact = 0;      // active sets and step bounds
+};
+
+struct NewtonResult {
+  bool converged = false;
+  std::string reason;           // why not, with the place
+  int iterations = 0;           // Newton steps taken
+  double residual = 0;          // N, largest component of the gradient at x over free vertices
+  double step_speed = 0;        // m/s, largest component of the last Newton step over dt, or the bound that replaced it
+  double first_step_speed = 0;  // m/s, of the first Newton step
+  double smallest_fraction = 1;  // of a Newton step that was taken
+  int halvings = 0;
+  int shifts = 0;  // factorisations repeated with a larger diagonal
+  int factorisations = 0;
+  long indefinite = 0;       // Hessians changed by projection, summed over iterations
+  bool at_rounding = false;  // stopped where rounding, not the tolerance, ends the progress
+  Evaluation evaluation;     // at x
+  NewtonSeconds seconds;
+};
+
+class Newton {
+ public:
+  explicit Newton(Ordering ordering = Ordering::automatic) : solver_(ordering) {}
+
+  // Moves x (3 x vertices, m) to a minimum. `contact` may be null. Whatever happens, x is a state inside the domain
+  // with an energy not above the first; throws InputError only when the first x is outside the domain or not finite.
+  NewtonResult minimise(System& system, Eigen::Matrix3Xd& x, const NewtonOptions& options, Contact* contact = nullptr);
+
+  const LinearSolver& linear_solver() const { return solver_; }
+  const BlockMatrix& matrix() const { return matrix_; }
+
+ private:
+  LinearSolver solver_;
+  BlockMatrix matrix_;  // kept, with its pattern, from call to call
+  Eigen::Matrix3Xd gradient_;
+  Eigen::Matrix3Xd direction_;
+};
+
+}  // namespace ergon

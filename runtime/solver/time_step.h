@@ -1,0 +1,105 @@
+#pragma once
+// One step of a simulation: implicit Euler as the minimum of an incremental potential, inertia + all other potentials
+// of the system. It establishes that a step either ends in a converged state free of penetration, or leaves the state
+// as it was and says why. Source: Gast et al. 2015, Optimization Integrator for Large Time Steps, TVCG 21(10); Li et
+// al. 2020, Incremental Potential Contact, TOG 39(4).
+//
+// Lags are set by name in every potential that has them: `dt` (s); `xhat` = x + dt*v and `xlag` = x at the start of the
+// step, both for one-point stencils, with the point's number appended (xlag0, xlag1) for others. A potential with the
+// lag dt is a term of the incremental potential and not stored energy.
+
+#include <Eigen/Core>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "runtime/contact/ground.h"
+#include "runtime/solver/newton.h"
+#include "runtime/system.h"
+
+namespace ergon {
+
+struct State {
+  Eigen::Matrix3Xd x;  // m, 3 x vertices
+  Eigen::Matrix3Xd v;  // m/s
+  double time = 0;     // s
+  long step = 0;
+};
+
+struct StepOptions {
+  double dt = 0.01;                 // s
+  double tolerance = 1e-4;          // m/s, of a Newton step over dt
+  int max_iterations = 200;         // of each Newton solve
+  int friction_lag_iterations = 2;  // solves per step, each with the normal forces of the one before
+  double friction_tolerance =
+      0.05;  // no further solve when normal forces changed by less than this fraction of their sum
+  Projection projection = Projection::clamp;
+  bool accept_unconverged = false;  // go on from the best state found; the record still says so
+};
+
+// J
+struct Energies {
+  std::vector<std::pair<std::string, double>> stored;  // by potential, in order of addition; equal names are added up
+  double kinetic = 0;
+  double total = 0;
+};
+
+// Seconds by part; the parts of all Newton solves of the step.
+struct StepSeconds : NewtonSeconds {
+  double total = 0;
+};
+
+struct StepRecord {
+  bool accepted = false;  // false: the state is as it was
+  bool converged = false;
+  std::string reason;  // why not
+  long step = 0;       // number and time of the state after the step
+  double time = 0;     // s
+  double dt = 0;       // s
+  int newton_iterations = 0;
+  double residual = 0;    // N
+  double step_speed = 0;  // m/s, against the tolerance
+  int factorisations = 0;
+  int halvings = 0;
+  int shifts = 0;
+  long indefinite = 0;
+  int friction_iterations = 0;                                    // solves
+  double friction_change = 0;                                     // of the normal forces after the last solve, fraction
+  int contacts = 0;                                               // pairs within dhat
+  double smallest_gap = std::numeric_limits<double>::infinity();  // m
+  double barrier_stiffness = 0;                                   // N/m, largest
+  double energy_added = 0;                                        // J, by changes of barrier stiffness
+  Energies energy;
+  StepSeconds seconds;
+  std::vector<std::string> skipped;  // "part: reason"
+};
+
+class TimeStepper {
+ public:
+  // The system with all its potentials, inertia among them; mass: kg, per vertex; `ground` may be null. System and
+  // ground must outlive this. Throws InputError for a dt or tolerance that is not positive.
+  TimeStepper(System& system, Eigen::VectorXd mass, GroundContact* ground, StepOptions options);
+
+  StepRecord step(State& state);
+
+  // Of a state, not only of one that was stepped to.
+  Energies energies(const State& state);
+
+  const Newton& newton() const { return newton_; }
+  StepOptions& options() { return options_; }
+
+ private:
+  void set_lags(const State& state, const Eigen::Matrix3Xd& xhat);
+  Energies energies_of(const Evaluation& evaluation, const Eigen::Matrix3Xd& v) const;
+  std::vector<std::string> skipped_parts(const StepRecord& record, bool ever_in_reach) const;
+
+  System* system_;
+  Eigen::VectorXd mass_;
+  GroundContact* ground_;
+  StepOptions options_;
+  Newton newton_;
+  std::vector<double> lagged_dt_;  // last dt given to each potential, so that an unchanged one stays untouched
+};
+
+}  // namespace ergon
