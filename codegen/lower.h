@@ -1,0 +1,15 @@
+#pragma once
+// Pass 1: an energy becomes a graph. Establishes value, conditions and the layout of inputs; operations stand in the
+// order in which the author wrote them. Points are inputs of Source::point (3*point + component); a density's F is
+// Source::q.
+
+#include "codegen/module.h"
+
+namespace ergon {
+
+Module lower(const Energy& energy, const std::string& case_name);
+
+// Splices unnamed sums that are used once into the sum that uses them.
+void flatten(Module& module);
+
+}  // namespace ergon

@@ -1,0 +1,47 @@
+#pragma once
+// What the passes of compile.cpp hand from one to the next: an energy as a graph, and what is known of it so far.
+
+#include <string>
+#include <vector>
+
+#include "codegen/graph.h"
+#include "symbolic/energy.h"
+
+namespace ergon {
+
+struct Module {
+  const Energy* energy = nullptr;
+  std::string case_name;
+
+  Graph graph;
+  NodeId value = -1;           // J, or J per rest volume
+  std::vector<NodeId> active;  // margins, positive where the condition holds
+  std::vector<NodeId> require;
+
+  // Layout of the inputs: first component of every param in `params`, of rest and lag in the raw element data; symbols
+  // in order of declaration, components column by column.
+  std::vector<int> offsets;  // per symbol of the energy; a dof's offset counts the components of points
+  int params = 0;
+  int raw = 0;
+  int points = 0;  // 0 for a density
+
+  // Set by frontier(): q = (weights (x) I3) x, weights [q_vectors][points]; for a density q is F and weights are empty.
+  int q_vectors = 0;
+  std::vector<double> weights;
+  int q_size() const { return 3 * q_vectors; }
+
+  // Set by differentiate(): with respect to q; the lower triangle packed by rows.
+  std::vector<NodeId> gradient;
+  std::vector<NodeId> hessian;
+
+  // Set by find_structure().
+  bool constant_gradient = false;
+  bool constant_hessian = false;
+  bool zero_hessian = false;
+  bool psd_hessian = false;
+
+  // Every node that something outside the graph refers to: value, conditions, gradient, Hessian.
+  std::vector<NodeId> roots() const;
+};
+
+}  // namespace ergon

@@ -1,0 +1,11 @@
+#pragma once
+// Pass 4: what need not be computed again, or at all. Establishes constant_gradient, constant_hessian, zero_hessian and
+// psd_hessian of the module.
+
+#include "codegen/module.h"
+
+namespace ergon {
+
+void find_structure(Module& module);
+
+}  // namespace ergon
