@@ -1,0 +1,113 @@
+#pragma once
+// ERGON_LANES adjacent doubles as one value, with the few operations that the projections need. It establishes that the
+// same text compiles to scalar code, to vectors with vector masks, and to vectors with mask registers.
+//
+// Everything is in an unnamed namespace: code for one width must never be merged with that of another by the linker.
+
+#ifndef ERGON_LANES
+#error "files in runtime/lanes are compiled once per width, with -DERGON_LANES=1, 4 or 8"
+#endif
+#if (ERGON_LANES == 8 && defined(__AVX512F__) && defined(__AVX512DQ__)) || (ERGON_LANES == 4 && defined(__AVX__))
+#include <immintrin.h>
+#endif
+
+namespace ergon::lanes {
+namespace {
+
+constexpr int kWidth = ERGON_LANES;
+constexpr unsigned kAllLanes = (1u << kWidth) - 1;
+
+#if ERGON_LANES == 1
+
+using Real = double;
+using Mask = bool;
+inline Real splat(double a) { return a; }
+inline Mask less(Real a, Real b) { return a < b; }
+inline Mask less_equal(Real a, Real b) { return a <= b; }
+inline Real select(Mask m, Real a, Real b) { return m ? a : b; }
+inline Mask both(Mask a, Mask b) { return a && b; }
+inline Mask either(Mask a, Mask b) { return a || b; }
+inline Mask negate(Mask a) { return !a; }
+inline unsigned bits(Mask a) { return a; }
+inline Mask from_bits(unsigned lanes) { return lanes & 1; }
+inline Real abs(Real a) { return __builtin_fabs(a); }
+inline Real sqrt(Real a) { return __builtin_sqrt(a); }
+inline Real rsqrt(Real a) { return 1 / __builtin_sqrt(a); }
+
+#else
+
+typedef double Real __attribute__((vector_size(8 * ERGON_LANES)));
+typedef long long Integer __attribute__((vector_size(8 * ERGON_LANES)));
+inline Real splat(double a) { return a - Real{}; }
+inline Real abs(Real a) { return (Real)((Integer)a & (Integer{} + 0x7fffffffffffffffLL)); }
+
+#if ERGON_LANES == 8 && defined(__AVX512F__) && defined(__AVX512DQ__)
+
+struct Mask {
+  __mmask8 k;
+};
+inline Mask less(Real a, Real b) { return {_mm512_cmp_pd_mask(a, b, _CMP_LT_OQ)}; }
+inline Mask less_equal(Real a, Real b) { return {_mm512_cmp_pd_mask(a, b, _CMP_LE_OQ)}; }
+inline Real select(Mask m, Real a, Real b) { return _mm512_mask_blend_pd(m.k, b, a); }
+inline Mask both(Mask a, Mask b) { return {static_cast<__mmask8>(a.k & b.k)}; }
+inline Mask either(Mask a, Mask b) { return {static_cast<__mmask8>(a.k | b.k)}; }
+inline Mask negate(Mask a) { return {static_cast<__mmask8>(~a.k)}; }
+inline unsigned bits(Mask a) { return a.k; }
+inline Mask from_bits(unsigned lanes) { return {static_cast<__mmask8>(lanes)}; }
+inline Real sqrt(Real a) { return _mm512_sqrt_pd(a); }
+
+// 1/sqrt(a) for positive normal a: 14 bits from the processor, then one step of fourth order. Two units in the last place.
+inline Real rsqrt(Real a) {
+  Real y = _mm512_rsqrt14_pd(a);
+  Real h = 1 - a * y * y;
+  return y + y * h * (0.5 + h * (0.375 + h * 0.3125));
+}
+
+#else
+
+using Mask = Integer;
+inline Mask less(Real a, Real b) { return a < b; }
+inline Mask less_equal(Real a, Real b) { return a <= b; }
+inline Real select(Mask m, Real a, Real b) { return m ? a : b; }
+inline Mask both(Mask a, Mask b) { return a & b; }
+inline Mask either(Mask a, Mask b) { return a | b; }
+inline Mask negate(Mask a) { return ~a; }
+inline Mask from_bits(unsigned lanes) {
+  Mask m;
+  for (int l = 0; l < kWidth; ++l) m[l] = -static_cast<long long>(lanes >> l & 1);
+  return m;
+}
+#if ERGON_LANES == 4 && defined(__AVX__)
+inline unsigned bits(Mask a) { return static_cast<unsigned>(_mm256_movemask_pd((Real)a)); }
+inline Real sqrt(Real a) { return _mm256_sqrt_pd(a); }
+#else
+inline unsigned bits(Mask a) {
+  unsigned b = 0;
+  for (int l = 0; l < kWidth; ++l) b |= static_cast<unsigned>(a[l] & 1) << l;
+  return b;
+}
+inline Real sqrt(Real a) {
+  for (int l = 0; l < kWidth; ++l) a[l] = __builtin_sqrt(a[l]);
+  return a;
+}
+#endif
+inline Real rsqrt(Real a) { return 1 / sqrt(a); }
+
+#endif
+#endif
+
+inline bool any(Mask m) { return bits(m) != 0; }
+// A NaN in a is dropped.
+inline Real max(Real a, Real b) { return select(less(b, a), a, b); }
+inline Real min(Real a, Real b) { return select(less(a, b), a, b); }
+
+// p is aligned to 64 bytes.
+inline Real load(const double* p) {
+  Real a;
+  __builtin_memcpy(&a, __builtin_assume_aligned(p, 8 * kWidth), sizeof(a));
+  return a;
+}
+inline void store(double* p, Real a) { __builtin_memcpy(__builtin_assume_aligned(p, 8 * kWidth), &a, sizeof(a)); }
+
+}  // namespace
+}  // namespace ergon::lanes
