@@ -1,0 +1,38 @@
+#pragma once
+// The energies that a scene uses: read once each, and their params checked against what the energy declares.
+
+#include <map>
+#include <string>
+
+#include "runtime/potential.h"
+#include "scenes/catalogue.h"
+#include "scenes/scene.h"
+#include "symbolic/energy.h"
+
+namespace ergon {
+
+// Reads energies on first use.
+class Laws {
+ public:
+  Laws(const Catalogue& catalogue, std::string scene_folder)
+      : catalogue_(&catalogue), scene_folder_(std::move(scene_folder)) {}
+
+  // Throws SourceError at `place` when there is no such law, and at the energy's own place when the file is wrong.
+  const Energy& get(const std::string& law, const Place& place);
+
+ private:
+  const Catalogue* catalogue_;
+  std::string scene_folder_;
+  std::map<std::string, Energy> read_;  // by file
+};
+
+// The values of all params of the energy in SI. Throws SourceError at the scene's line for a param that is missing,
+// unknown (with the nearest), of the wrong size or unit, or outside its declared range.
+Parameters checked_params(const Energy& energy, const EnergyUse& use);
+
+// Throws SourceError at the scene's line unless an object can carry the energy: densities of solids, and stencils of
+// one point or of edges, with rest data (`mass` of a point, rest positions) and lags (`dt`, `xhat`, `xlag`) that a
+// scene supplies.
+void check_supported(const Energy& energy, const EnergyUse& use);
+
+}  // namespace ergon

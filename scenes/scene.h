@@ -1,0 +1,120 @@
+#pragma once
+// A scene as its author wrote it: plain values in SI units, each with the place it was read from. Nothing here knows of
+// meshes in memory, kernels or solvers.
+
+#include <array>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "symbolic/diagnostic.h"
+#include "symbolic/units.h"
+
+namespace ergon {
+
+using Vector3 = std::array<double, 3>;
+
+// Where a table of the scene and each of its keys stand. A scene built in C++ may leave all of it empty.
+struct Located {
+  Place place;
+  std::map<std::string, Place> keys;
+
+  bool wrote(const std::string& key) const { return keys.count(key) > 0; }
+  // The place of a key's value, or of the table when the key was left out.
+  const Place& at(const std::string& key) const {
+    auto found = keys.find(key);
+    return found == keys.end() ? place : found->second;
+  }
+};
+
+// A number as written: `unit` is absent when it was a bare number, which counts as SI.
+struct Quantity {
+  double value = 0;  // SI
+  std::optional<Unit> unit;
+  std::string text;  // "0.5 MPa"
+};
+
+// The values of one param of an energy, components column by column.
+struct ParamValue {
+  std::vector<Quantity> components;
+  Place key_place;
+  Place place;
+};
+
+struct EnergyUse : Located {
+  std::string law;  // a name in the catalogue, or a path ending in .energy relative to the scene file
+  std::map<std::string, ParamValue> params;
+};
+
+// All points with min <= x <= max, in metres, after the object has been scaled, rotated and translated.
+struct BoxSelector : Located {
+  static constexpr double inf = std::numeric_limits<double>::infinity();
+  Vector3 min = {-inf, -inf, -inf};
+  Vector3 max = {inf, inf, inf};
+};
+
+struct BoxSource : Located {
+  Vector3 size = {1, 1, 1};  // m
+  std::array<int, 3> cells = {1, 1, 1};
+};
+
+struct SceneObject : Located {
+  std::string name;
+  std::string mesh;              // path relative to the scene file; "" when `box` is given
+  std::optional<BoxSource> box;  // one corner at the origin before the object is moved
+  double max_edge = 0;           // m, of the tetrahedra that fill a surface; 0: continued from the surface
+  std::string element = "tet4";
+  double scale = 1;
+  Vector3 rotate = {0, 0, 0};     // rad, about x, then y, then z (fixed axes)
+  Vector3 translate = {0, 0, 0};  // m
+  double density = 0;             // kg/m^3
+  Vector3 velocity = {0, 0, 0};   // m/s
+  std::vector<EnergyUse> energies;
+  std::vector<BoxSelector> fixed;
+};
+
+// The half-space dot(normal, x) < height.
+struct SceneGround : Located {
+  Vector3 normal = {0, 0, 1};       // any length
+  double height = 0;                // m, along the unit normal
+  double mu = 0;                    // 0: no friction
+  double epsv = 1e-3;               // m/s
+  double dhat = 1e-3;               // m
+  std::optional<double> stiffness;  // N/m; absent: chosen and adapted by the solver
+};
+
+struct TimeSettings : Located {
+  double dt = 0;              // s
+  std::optional<double> end;  // s; exactly one of `end` and `steps`
+  std::optional<int> steps;
+};
+
+struct SolverSettings : Located {
+  double tolerance = 1e-4;  // m/s
+  int max_iterations = 200;
+  int friction_iterations = 2;
+  double friction_tolerance = 0.05;  // fraction of the sum of normal forces
+  std::string projection = "clamp";
+  bool accept_unconverged = false;
+};
+
+struct OutputSettings : Located {
+  std::string folder;         // "": out/ and the name of the scene file; relative to the working directory
+  double frame_interval = 0;  // s; 0: every step
+  bool frames = true;
+};
+
+struct Scene : Located {
+  std::string file;
+  std::string description;
+  Vector3 gravity = {0, 0, -9.81};  // m/s^2
+  TimeSettings time;
+  SolverSettings solver;
+  OutputSettings output;
+  std::vector<SceneObject> objects;
+  std::vector<SceneGround> grounds;
+};
+
+}  // namespace ergon
