@@ -26,11 +26,10 @@ struct FillOptions {
   int optimization_rounds = 1;
 };
 
-// Fills a closed triangle surface with tetrahedra. The surface's triangles are kept: its vertices keep their numbers and
-// come first. Several closed parts may lie beside or inside one another; a part inside another is a cavity, one inside
-// a cavity is solid again. Triangles may be oriented either way.
-// Throws InputError: empty, open or branching surface (how many edges, one of them with coordinates), triangles that
-// cut one another, or what Gmsh itself reports.
+// Fills a closed triangle surface with tetrahedra. The surface's triangles are kept: its vertices keep their numbers
+// and come first. Several closed parts may lie beside or inside one another; a part inside another is a cavity, one
+// inside a cavity is solid again. Triangles may be oriented either way. Throws InputError: empty, open or branching
+// surface (how many edges, one of them with coordinates), triangles that cut one another, or what Gmsh itself reports.
 Mesh fill_surface(const Mesh& surface, const FillOptions& options = {});
 
 }  // namespace ergon

@@ -43,8 +43,8 @@ ReorderedMesh spatial_order(const Mesh& mesh);
 // X -> rotation * (scale * X) + translation.
 struct Transform {
   double scale = 1;
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  // of any length but zero
-  double angle = 0;                                 // rad
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();        // of any length but zero
+  double angle = 0;                                       // rad
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();  // m
 };
 // Throws InputError unless scale is positive, the axis is not zero and all numbers are finite.

@@ -1,0 +1,78 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "runtime/mesh/closed_surface.h"
+
+namespace ergon {
+namespace {
+
+using Corners = std::array<Eigen::Vector3d, 3>;
+
+// Sign of the volume of (a, b, c, d), or 0 when rounding could have changed it.
+int side(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c, const Eigen::Vector3d& d) {
+  const Eigen::Vector3d ad = a - d, bd = b - d, cd = c - d;
+  const double volume = ad.dot(bd.cross(cd));
+  // The sum of the absolute products bounds the rounding error times 7 units (Shewchuk 1997, Adaptive Precision
+  // Floating-Point Arithmetic and Fast Robust Geometric Predicates, orient3d, filter A); 16 leaves room for fused or
+  // reordered operations.
+  const Eigen::Vector3d p = ad.cwiseAbs(), q = bd.cwiseAbs(), r = cd.cwiseAbs();
+  const double magnitude = p.x() * (q.y() * r.z() + q.z() * r.y()) + p.y() * (q.z() * r.x() + q.x() * r.z()) +
+                           p.z() * (q.x() * r.y() + q.y() * r.x());
+  const double bound = 16 * std::numeric_limits<double>::epsilon() * magnitude;
+  return volume > bound ? 1 : volume < -bound ? -1 : 0;
+}
+
+bool pierces(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const Corners& t) {
+  const int above = side(t[0], t[1], t[2], from);
+  if (above == 0 || side(t[0], t[1], t[2], to) != -above) return false;
+  const int turn = side(from, to, t[0], t[1]);
+  return turn != 0 && side(from, to, t[1], t[2]) == turn && side(from, to, t[2], t[0]) == turn;
+}
+
+bool cut(const Corners& a, const Corners& b) {
+  for (size_t i = 0; i < 3; ++i) {
+    if (pierces(a[i], a[(i + 1) % 3], b) || pierces(b[i], b[(i + 1) % 3], a)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::array<int, 2> crossing_triangles(const Eigen::Matrix3Xd& X, const std::vector<std::array<int, 3>>& triangles) {
+  // Sweep along the longest axis over the triangles' boxes.
+  const Eigen::Vector3d extent = X.rowwise().maxCoeff() - X.rowwise().minCoeff();
+  int axis = 0;
+  extent.maxCoeff(&axis);
+  const size_t count = triangles.size();
+  std::vector<Eigen::AlignedBox3d> boxes(count);
+  for (size_t t = 0; t < count; ++t) {
+    for (const int v : triangles[t]) boxes[t].extend(Eigen::Vector3d(X.col(v)));
+  }
+  std::vector<int> order(count);
+  std::iota(order.begin(), order.end(), 0);
+  const auto box = [&](int t) -> const Eigen::AlignedBox3d& { return boxes[static_cast<size_t>(t)]; };
+  std::sort(order.begin(), order.end(), [&](int a, int b) {
+    return box(a).min()(axis) != box(b).min()(axis) ? box(a).min()(axis) < box(b).min()(axis) : a < b;
+  });
+  const auto corners = [&](int t) {
+    const auto& v = triangles[static_cast<size_t>(t)];
+    return Corners{X.col(v[0]), X.col(v[1]), X.col(v[2])};
+  };
+  for (size_t i = 0; i < count; ++i) {
+    const int a = order[i];
+    for (size_t j = i + 1; j < count && box(order[j]).min()(axis) <= box(a).max()(axis); ++j) {
+      const int b = order[j];
+      if (!box(a).intersects(box(b))) continue;
+      const auto& va = triangles[static_cast<size_t>(a)];
+      const auto& vb = triangles[static_cast<size_t>(b)];
+      const bool adjacent = std::find_first_of(va.begin(), va.end(), vb.begin(), vb.end()) != va.end();
+      if (!adjacent && cut(corners(a), corners(b))) return {std::min(a, b), std::max(a, b)};
+    }
+  }
+  return {-1, -1};
+}
+
+}  // namespace ergon
