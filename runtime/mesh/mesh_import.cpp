@@ -194,8 +194,8 @@ void add_solids(const Mesh& surface, const std::vector<SurfacePart>& parts) {
   gmsh::model::geo::synchronize();
 }
 
-// The filled mesh must have exactly the given boundary and the volume it encloses.
-void check_filled(const Mesh& solid, const std::vector<SurfacePart>& parts) {
+// The filled mesh must have exactly the given vertices and boundary, and the volume it encloses.
+void check_filled(const Mesh& surface, const Mesh& solid, const std::vector<SurfacePart>& parts) {
   std::vector<std::array<int, 3>> wanted;
   double volume = 0;
   for (const SurfacePart& part : parts) {
@@ -207,7 +207,9 @@ void check_filled(const Mesh& solid, const std::vector<SurfacePart>& parts) {
     for (auto& t : *triangles) std::sort(t.begin(), t.end());
     std::sort(triangles->begin(), triangles->end());
   }
-  if (wanted != found) {
+  const bool same_vertices =
+      solid.vertices() >= surface.vertices() && solid.X.leftCols(surface.vertices()) == surface.X;
+  if (!same_vertices || wanted != found) {
     throw InputError(solid.source +
                      ": Gmsh did not keep the surface's triangles; repair the surface (thin or "
                      "touching parts)");
@@ -220,22 +222,13 @@ void check_filled(const Mesh& solid, const std::vector<SurfacePart>& parts) {
   }
 }
 
-// Vertices of the surface first, in their order; then those that Gmsh added.
-Mesh solid_of_model(const Mesh& surface) {
-  Mesh solid = mesh_of_model(Element::tet4, surface.source);
-  if (solid.cells.empty()) throw InputError(surface.source + ": Gmsh made no tetrahedra");
-  return solid;
-}
-
 }  // namespace
 
 Mesh read_mesh(const std::string& path) {
   check_is_msh(path);
   GmshSession session;
-  Mesh mesh;
   session.run(path, "read the mesh", [&] { gmsh::merge(path); });
-  const Element element = element_in_model(path);
-  return mesh_of_model(element, path);
+  return mesh_of_model(element_in_model(path), path);
 }
 
 Mesh fill_surface(const Mesh& surface, const FillOptions& options) {
@@ -245,20 +238,23 @@ Mesh fill_surface(const Mesh& surface, const FillOptions& options) {
                     "from the surface",
                     surface.source, options.max_edge_length));
   }
+  if (!(options.improve_below >= 0 && options.improve_below <= 1)) {
+    throw InputError(fmt::format("{}: tetrahedra are to be improved below a quality of {}; it must be between 0 and 1",
+                                 surface.source, options.improve_below));
+  }
   check_mesh(surface);
   const std::vector<SurfacePart> parts = closed_parts(surface);
   GmshSession session;
-  Mesh solid;
   session.run(surface.source, "fill the surface", [&] {
     gmsh::option::setNumber("Mesh.Algorithm3D", 1);
+    gmsh::option::setNumber("Mesh.OptimizeThreshold", options.improve_below);
     if (options.max_edge_length > 0) gmsh::option::setNumber("Mesh.MeshSizeMax", options.max_edge_length);
     gmsh::model::add("solid");
     add_solids(surface, parts);
     gmsh::model::mesh::generate(3);
-    for (int round = 1; round < options.optimization_rounds; ++round) gmsh::model::mesh::optimize("Netgen");
   });
-  solid = solid_of_model(surface);
-  check_filled(solid, parts);
+  const Mesh solid = mesh_of_model(Element::tet4, surface.source);
+  check_filled(surface, solid, parts);
   check_mesh(solid);
   return solid;
 }

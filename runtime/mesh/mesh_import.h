@@ -15,15 +15,16 @@ namespace ergon {
 Mesh read_mesh(const std::string& path);
 
 // Reads a triangle surface from .obj, .stl (text or binary) or .ply (text or binary). Vertices with equal coordinates
-// are merged, those of no triangle left out, quadrilaterals are cut in two. The surface need not be closed.
+// are merged, triangles that lose a side by that and vertices of no triangle are left out, quadrilaterals are cut in
+// two. The surface need not be closed.
 // Throws InputError with the line (or the number of the record in a binary file).
 Mesh read_surface(const std::string& path);
 
 struct FillOptions {
   // No edge inside the solid is meant to be longer than this, m; 0: sizes are continued from the surface.
   double max_edge_length = 0;
-  // Rounds of mesh improvement after filling. More rounds cost time and remove flatter tetrahedra.
-  int optimization_rounds = 1;
+  // Tetrahedra whose quality (Gmsh's gamma: 0 flat, 1 regular) is below this are improved after filling.
+  double improve_below = 0.6;
 };
 
 // Fills a closed triangle surface with tetrahedra. The surface's triangles are kept: its vertices keep their numbers
