@@ -12,23 +12,14 @@
 //   Scalar input(const Symbol& symbol, int component);          column by column
 //   void named(const std::string& let, int component, int size, const Scalar& value);   a let's component was formed
 
-#include <map>
 #include <string>
 #include <vector>
 
 #include "symbolic/energy.h"
+#include "symbolic/functions.h"
+#include "symbolic/tensor.h"
 
 namespace ergon {
-
-// Scalar functions that every algebra knows.
-enum class Function { sqrt, log, exp, log1p, expm1, sin, cos, tan, asin, acos, atan, atan2, abs, min, max };
-
-template <class S>
-struct Tensor {
-  Shape shape;
-  std::vector<S> at;  // column by column
-  const S& operator()(int row, int col = 0) const { return at[static_cast<size_t>(col * shape.rows + row)]; }
-};
 
 template <class S>
 struct Elaborated {

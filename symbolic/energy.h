@@ -24,6 +24,7 @@ struct Range {
   double upper = std::numeric_limits<double>::infinity();
   bool lower_open = true;
   bool upper_open = true;
+  bool operator==(const Range&) const = default;
   bool contains(double v) const {
     return (lower_open ? v > lower : v >= lower) && (upper_open ? v < upper : v <= upper);
   }
@@ -60,9 +61,8 @@ struct Energy {
   enum class Kind { density, stencil };
   Kind kind = Kind::density;
   std::string name;
-  std::string
-      geometry;  // density: "solid" (F 3x3), "membrane" (3x2), "line" (3x1); stencil: "point", "edge", "hinge" ...
-  std::string summary;  // the comment lines above the header
+  std::string geometry;  // density: "solid" (F 3x3), "membrane" (3x2), "line" (3x1); stencil: "point", "hinge" ...
+  std::string summary;   // the comment lines above the header
   std::string cite;
   std::vector<Symbol> symbols;  // in order of declaration; a density's "F" (Role::dof) comes first
   std::vector<Let> lets;        // in order; a case's lets stand where they were written
@@ -77,6 +77,14 @@ struct Energy {
   const Symbol* find(std::string_view symbol_name) const;
   std::vector<const Symbol*> with_role(Role role) const;
 };
+
+const std::vector<std::string>& stencil_names();
+
+// Points of a stencil ("point" 1, "edge" 2, "hinge" 4 ...); 0 when there is none of that name.
+int points_of_stencil(std::string_view stencil);
+
+// Shape of F in a density of that geometry; nothing when there is none of that name.
+std::optional<Shape> shape_of_F(std::string_view geometry);
 
 // Reads and analyses (names, shapes, units, ranges) one energy. Throws SourceError at the exact place.
 Energy parse_energy(std::string_view text, const std::string& file);

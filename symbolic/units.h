@@ -13,6 +13,7 @@ struct Exponent {
   int den = 1;
   bool operator==(const Exponent&) const = default;
 };
+// Exponents of more than four digits throw std::invalid_argument.
 Exponent operator+(Exponent a, Exponent b);
 Exponent operator-(Exponent a, Exponent b);
 Exponent operator*(Exponent a, Exponent b);
@@ -37,7 +38,10 @@ struct ScaledUnit {
 // naming the part that is not known and the nearest unit.
 ScaledUnit parse_unit(std::string_view text);
 
-// The shortest common spelling: "Pa", "J/m^4", "kg*m/s", "1".
+// The common spelling: "Pa", "J/m^4", "kg*m/s", "1".
 std::string to_string(const Unit& unit);
+
+// The kind of quantity with its unit: "a length (m)"; the unit alone where the kind has no common name.
+std::string describe(const Unit& unit);
 
 }  // namespace ergon

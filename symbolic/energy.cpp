@@ -1,0 +1,66 @@
+#include "symbolic/energy.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+namespace ergon {
+
+std::string to_string(Shape shape) {
+  if (shape.scalar()) return "scalar";
+  if (shape.cols == 1) return fmt::format("vector of {}", shape.rows);
+  return fmt::format("{}x{} matrix", shape.rows, shape.cols);
+}
+
+std::string to_string(const Range& range) {
+  auto bound = [](double v) { return std::isinf(v) ? std::string(v < 0 ? "-inf" : "inf") : fmt::format("{}", v); };
+  return fmt::format("{}{}, {}{}", range.lower_open ? '(' : '[', bound(range.lower), bound(range.upper),
+                     range.upper_open ? ')' : ']');
+}
+
+const Symbol* Energy::find(std::string_view symbol_name) const {
+  for (const Symbol& symbol : symbols)
+    if (symbol.name == symbol_name) return &symbol;
+  return nullptr;
+}
+
+std::vector<const Symbol*> Energy::with_role(Role role) const {
+  std::vector<const Symbol*> result;
+  for (const Symbol& symbol : symbols)
+    if (symbol.role == role) result.push_back(&symbol);
+  return result;
+}
+
+const std::vector<std::string>& stencil_names() {
+  static const std::vector<std::string> names = {"point",       "edge",       "triangle",       "tetrahedron", "hinge",
+                                                 "point_point", "point_edge", "point_triangle", "edge_edge"};
+  return names;
+}
+
+int points_of_stencil(std::string_view stencil) {
+  constexpr std::array points = {1, 2, 3, 4, 4, 2, 3, 4, 4};
+  for (size_t i = 0; i < points.size(); ++i)
+    if (stencil_names()[i] == stencil) return points[i];
+  return 0;
+}
+
+std::optional<Shape> shape_of_F(std::string_view geometry) {
+  if (geometry == "solid") return Shape{3, 3};
+  if (geometry == "membrane") return Shape{3, 2};
+  if (geometry == "line") return Shape{3, 1};
+  return std::nullopt;
+}
+
+Energy read_energy(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw SourceError({file, 0, 0}, "cannot open the energy file");
+  std::ostringstream text;
+  text << stream.rdbuf();
+  if (stream.bad() || text.fail()) throw SourceError({file, 0, 0}, "cannot read the energy file");
+  return parse_energy(text.str(), file);
+}
+
+}  // namespace ergon

@@ -1,0 +1,211 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "symbolic/analyse.h"
+#include "symbolic/declaration.h"
+#include "symbolic/energy.h"
+#include "symbolic/expression_parser.h"
+#include "symbolic/statements.h"
+
+namespace ergon {
+namespace {
+
+const std::vector<std::string> keywords = {"density", "energy", "cite",    "param", "lag",   "rest", "dof",
+                                           "let",     "active", "require", "frame", "value", "case"};
+
+std::string list(const std::vector<std::string>& names) { return fmt::format("{}", fmt::join(names, ", ")); }
+
+class EnergyParser {
+ public:
+  EnergyParser(std::string_view text, const std::string& file) {
+    energy_.text = text;
+    energy_.file = file;
+    Statements statements = split_statements(text, file);
+    energy_.summary = std::move(statements.summary);
+    if (statements.all.empty())
+      throw SourceError({file, 0, 0}, "expected `density NAME GEOMETRY` or `energy NAME STENCIL`, found an empty file");
+    header(statements.all.front());
+    for (size_t i = 1; i < statements.all.size(); ++i) read(statements.all[i]);
+  }
+
+  Energy finish() {
+    if (!energy_.value)
+      throw SourceError(header_,
+                        fmt::format("'{}' has no value; expected a statement `value EXPRESSION`", energy_.name));
+    analyse(energy_);
+    return std::move(energy_);
+  }
+
+ private:
+  struct Words {
+    std::vector<std::string> text;
+    std::vector<Place> places;
+  };
+
+  static Words split(const Statement& statement) {
+    Words words;
+    const std::string& text = statement.text;
+    for (size_t at = text.find_first_not_of(" \t"); at < text.size();) {
+      const size_t end = std::min(text.find_first_of(" \t", at), text.size());
+      words.text.push_back(text.substr(at, end - at));
+      words.places.push_back(statement.place(at));
+      at = std::min(text.find_first_not_of(" \t", end), text.size());
+    }
+    words.places.push_back(statement.place(text.size()));
+    return words;
+  }
+
+  void header(const Statement& statement) {
+    const Words words = split(statement);
+    header_ = words.places[0];
+    const bool density = words.text[0] == "density";
+    if (!density && words.text[0] != "energy")
+      throw SourceError(words.places[0], fmt::format("expected `density NAME GEOMETRY` or `energy NAME STENCIL` as the "
+                                                     "first statement, found '{}'",
+                                                     words.text[0]) +
+                                             did_you_mean(words.text[0], {"density", "energy"}));
+    const char* third = density ? "GEOMETRY" : "STENCIL";
+    if (words.text.size() != 3)
+      throw SourceError(words.places[std::min<size_t>(words.text.size(), 3)],
+                        fmt::format("expected `{} NAME {}`, found {}", words.text[0], third,
+                                    words.text.size() < 3 ? "the end of the statement" : "'" + words.text[3] + "'"));
+    energy_.kind = density ? Energy::Kind::density : Energy::Kind::stencil;
+    energy_.name = words.text[1];
+    energy_.geometry = words.text[2];
+    if (end_of_name(energy_.name, 0) != energy_.name.size())
+      throw SourceError(words.places[1],
+                        fmt::format("expected a name of letters, digits and '_', found '{}'", energy_.name));
+    density ? density_geometry(words.places[2]) : stencil_geometry(words.places[2]);
+  }
+
+  void density_geometry(const Place& place) {
+    static const std::vector<std::string> known = {"solid", "membrane", "line"};
+    const std::optional<Shape> shape = shape_of_F(energy_.geometry);
+    if (!shape)
+      throw SourceError(
+          place, fmt::format("unknown geometry '{}'; a density is over one of {}", energy_.geometry, list(known)) +
+                     did_you_mean(energy_.geometry, known));
+    energy_.symbols.push_back({"F", Role::dof, *shape, {}, {}, "deformation gradient", place});
+  }
+
+  void stencil_geometry(const Place& place) {
+    if (points_of_stencil(energy_.geometry) > 0) return;
+    throw SourceError(place,
+                      fmt::format("unknown stencil '{}'; known are {}", energy_.geometry, list(stencil_names())) +
+                          did_you_mean(energy_.geometry, stencil_names()));
+  }
+
+  void read(const Statement& statement) {
+    const size_t end = end_of_name(statement.text, 0);
+    const std::string word = statement.text.substr(0, end);
+    const Place place = statement.place();
+    if (word == "density" || word == "energy")
+      throw SourceError(place, fmt::format("a second header; a file holds one energy, and '{}' began in line {}",
+                                           energy_.name, header_.line));
+    if (word == "cite") return cite(statement, end);
+    if (word == "param") return declare(statement, end, Role::param);
+    if (word == "lag") return declare(statement, end, Role::lag);
+    if (word == "rest") return declare(statement, end, Role::rest);
+    if (word == "dof") return declare(statement, end, Role::dof);
+    if (word == "frame") return frame(statement);
+
+    if (word == "let" || word == "case" || word == "active" || word == "require" || word == "value") {
+      ExpressionParser parser(tokenise(statement, end));
+      if (word == "let") let(parser);
+      if (word == "case") case_let(parser);
+      if (word == "active" || word == "require") condition(parser, word, place);
+      if (word == "value") value(parser, place);
+      return;
+    }
+    const size_t blank = std::min(statement.text.find_first_of(" \t"), statement.text.size());
+    std::string message = fmt::format("unknown statement '{}'", statement.text.substr(0, std::max(end, blank)));
+    const size_t sign = statement.text.find_first_not_of(" \t", end);
+    if (end > 0 && sign < statement.text.size() && statement.text[sign] == '=')
+      throw SourceError(place, message + fmt::format("; a name is given by `let {} = ...`", word));
+    throw SourceError(place,
+                      message + fmt::format("; expected one of {}", list(keywords)) + did_you_mean(word, keywords));
+  }
+
+  void cite(const Statement& statement, size_t end) {
+    const size_t start = statement.text.find_first_not_of(" \t", end);
+    if (start == std::string::npos)
+      throw SourceError(statement.place(end), "expected the source of the energy, found the end of the statement");
+    if (!energy_.cite.empty()) energy_.cite += "; ";
+    energy_.cite += statement.text.substr(start);
+  }
+
+  void declare(const Statement& statement, size_t end, Role role) {
+    if (role == Role::dof && energy_.kind == Energy::Kind::density)
+      throw SourceError(statement.place(),
+                        "a density is written over F alone, which is declared by its header; "
+                        "energies over points begin with `energy NAME STENCIL`");
+    for (Symbol& symbol : parse_declaration(statement, end, role)) {
+      if (role == Role::dof && symbol.range != Range{})
+        throw SourceError(symbol.place,
+                          fmt::format("a dof has no range; keep '{}' within it by `require`", symbol.name));
+      energy_.symbols.push_back(std::move(symbol));
+    }
+  }
+
+  void frame(const Statement& statement) {
+    const Words words = split(statement);
+    if (words.text.size() != 2 || words.text[1] != "fixed")
+      throw SourceError(words.places[std::min<size_t>(1, words.text.size())],
+                        fmt::format("expected `frame fixed`, found '{}'", statement.text));
+    energy_.fixed_frame = true;
+  }
+
+  void let(ExpressionParser& parser) {
+    const Token name = parser.take_name("a name to give");
+    finish_let(parser, name, "");
+  }
+
+  void case_let(ExpressionParser& parser) {
+    const Token case_name = parser.take_name("the name of the case, as in `case face gap2 = ...`");
+    const Token name = parser.take_name("a name to give, as in `case face gap2 = ...`");
+    auto& cases = energy_.cases;
+    if (std::find(cases.begin(), cases.end(), case_name.text) == cases.end()) cases.push_back(case_name.text);
+    finish_let(parser, name, case_name.text);
+  }
+
+  void finish_let(ExpressionParser& parser, const Token& name, const std::string& case_name) {
+    parser.take_sign("=", fmt::format("after '{}'", name.text).c_str());
+    Let let{name.text, case_name, parser.expression(), name.place};
+    parser.finish();
+    energy_.lets.push_back(std::move(let));
+  }
+
+  void condition(ExpressionParser& parser, const std::string& keyword, const Place& place) {
+    if (keyword == "active" && energy_.kind == Energy::Kind::density)
+      throw SourceError(place, "a density is active in every element; `active` belongs to stencil energies");
+    ExpressionPtr left = parser.expression();
+    if (!parser.next().is("<") && !parser.next().is(">"))
+      throw SourceError(parser.next().place,
+                        fmt::format("expected '<' or '>' in a condition, found {}", to_string(parser.next())));
+    const Token sign = parser.take();
+    ExpressionPtr right = parser.expression();
+    parser.finish();
+    if (sign.is(">")) std::swap(left, right);
+    (keyword == "active" ? energy_.active : energy_.require).push_back({left, right, sign.place});
+  }
+
+  void value(ExpressionParser& parser, const Place& place) {
+    if (energy_.value)
+      throw SourceError(place,
+                        fmt::format("a second value; '{}' has one already in line {}", energy_.name, value_.line));
+    value_ = place;
+    energy_.value = parser.expression();
+    parser.finish();
+  }
+
+  Energy energy_;
+  Place header_, value_;
+};
+
+}  // namespace
+
+Energy parse_energy(std::string_view text, const std::string& file) { return EnergyParser(text, file).finish(); }
+
+}  // namespace ergon
