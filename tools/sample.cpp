@@ -1,0 +1,161 @@
+#include "tools/sample.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "runtime/error.h"
+#include "runtime/mesh/mesh_build.h"
+
+namespace ergon {
+namespace {
+
+Mesh square_of_triangles(int cells) {
+  Mesh mesh;
+  mesh.element = Element::tri3;
+  const int row = cells + 1;
+  mesh.X.resize(3, row * row);
+  for (int j = 0; j < row; ++j) {
+    for (int i = 0; i < row; ++i) mesh.X.col(j * row + i) << double(i) / cells, double(j) / cells, 0;
+  }
+  for (int j = 0; j < cells; ++j) {
+    for (int i = 0; i < cells; ++i) {
+      const int a = j * row + i;
+      mesh.cells.insert(mesh.cells.end(), {a, a + 1, a + row + 1, a, a + row + 1, a + row});
+    }
+  }
+  return mesh;
+}
+
+// Pairs of corners (by their place in the cell) that an edge joins.
+std::vector<std::array<int, 2>> corner_edges(Element element) {
+  switch (element) {
+    case Element::point:
+      return {};
+    case Element::edge2:
+      return {{0, 1}};
+    case Element::tri3:
+      return {{0, 1}, {1, 2}, {2, 0}};
+    case Element::tet4:
+    case Element::tet10:
+      return {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+    case Element::hex8:
+      return {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
+  }
+  return {};
+}
+
+std::vector<int> edges_of(const Mesh& mesh) {
+  const std::vector<std::array<int, 2>> corners = corner_edges(mesh.element);
+  const int nodes = nodes_of(mesh.element);
+  std::vector<std::array<int, 2>> edges;
+  for (size_t start = 0; start < mesh.cells.size(); start += static_cast<size_t>(nodes)) {
+    for (const auto& [a, b] : corners) {
+      const int va = mesh.cells[start + static_cast<size_t>(a)], vb = mesh.cells[start + static_cast<size_t>(b)];
+      edges.push_back({std::min(va, vb), std::max(va, vb)});
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  std::vector<int> flat;
+  for (const auto& [a, b] : edges) flat.insert(flat.end(), {a, b});
+  return flat;
+}
+
+}  // namespace
+
+Mesh sample_mesh(Element element, int cells) {
+  if (cells < 1) throw InputError(fmt::format("{} cells per edge; at least 1 is needed", cells));
+  const Eigen::Vector3d size = Eigen::Vector3d::Ones();
+  const std::array<int, 3> counts = {cells, cells, cells};
+  switch (element) {
+    case Element::tet4:
+      return box_tets(size, counts);
+    case Element::tet10:
+      return to_tet10(box_tets(size, counts));
+    case Element::hex8:
+      return box_hexes(size, counts);
+    case Element::tri3:
+      return square_of_triangles(cells);
+    case Element::edge2: {
+      Mesh mesh = box_tets(size, counts);
+      mesh.cells = edges_of(mesh);
+      mesh.element = Element::edge2;
+      return mesh;
+    }
+    case Element::point:
+      break;
+  }
+  throw InputError(fmt::format("there is no sample mesh of {} elements", name_of(element)));
+}
+
+Eigen::Matrix3Xd displaced(const Eigen::Matrix3Xd& X, double spacing, double amplitude) {
+  std::mt19937_64 random(20);  // fixed seed; only its raw bits are used, which the standard defines
+  auto uniform = [&random](double low, double high) { return low + (high - low) * double(random() >> 11) * 0x1p-53; };
+  Eigen::Matrix3Xd noise = Eigen::Matrix3Xd::Zero(3, X.cols());
+  for (int c = 0; c < 3; ++c) {
+    for (int wave = 0; wave < 3; ++wave) {
+      Eigen::Vector3d k(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
+      k *= 2 * std::numbers::pi / (k.norm() * spacing * uniform(3, 6));
+      const double phase = uniform(0, 2 * std::numbers::pi);
+      noise.row(c) += ((k.transpose() * X).array() + phase).sin().matrix();
+    }
+  }
+  return X + noise * (amplitude / noise.cwiseAbs().maxCoeff());
+}
+
+Element default_element(const Energy& density) {
+  if (density.geometry == "solid") return Element::tet4;
+  return density.geometry == "membrane" ? Element::tri3 : Element::edge2;
+}
+
+void check_element(const Energy& density, Element element) {
+  const int dimension = density.geometry == "solid" ? 3 : density.geometry == "membrane" ? 2 : 1;
+  if (dimension_of(element) != dimension) {
+    throw InputError(fmt::format("{} is a density of a {}; {} elements have dimension {}, not {}", density.name,
+                                 density.geometry, name_of(element), dimension_of(element), dimension));
+  }
+}
+
+std::vector<int> stencils_on_mesh(std::string_view geometry, const Mesh& mesh) {
+  if (geometry == "edge") return edges_of(mesh);
+  if (geometry == "point") {
+    std::vector<int> vertices = mesh.cells;
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    return vertices;
+  }
+  throw InputError(fmt::format("no stencils '{}' can be made from a mesh; 'point' and 'edge' can", geometry));
+}
+
+std::map<std::string, std::vector<double>> sample_values(const Energy& energy, Role role, int attempt) {
+  std::mt19937_64 random(static_cast<unsigned long>(attempt));
+  auto uniform = [&random](double low, double high) { return low + (high - low) * double(random() >> 11) * 0x1p-53; };
+  std::map<std::string, std::vector<double>> values;
+  for (const Symbol* symbol : energy.with_role(role)) {
+    std::vector<double>& at = values[symbol->name];
+    const Range& range = symbol->range;
+    const bool below = std::isfinite(range.lower), above = std::isfinite(range.upper);
+    for (int i = 0; i < symbol->shape.size(); ++i) {
+      const double fraction = attempt == 0 ? 0.8 : uniform(0.05, 0.95);
+      const double distance = attempt == 0 ? 1 : std::pow(10, uniform(-2, 2));
+      if (below && above) {
+        at.push_back(range.lower + fraction * (range.upper - range.lower));
+      } else if (below) {
+        at.push_back(range.lower + distance);
+      } else if (above) {
+        at.push_back(range.upper - distance);
+      } else {
+        at.push_back(attempt == 0 ? 0 : uniform(-10, 10));
+      }
+    }
+    // A direction: params of this shape are unit normals.
+    if (symbol->shape == Shape{3, 1} && symbol->unit.dimensionless()) at = {0, 0, 1};
+  }
+  return values;
+}
+
+}  // namespace ergon
