@@ -1,0 +1,65 @@
+#include "tools/sample.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "runtime/error.h"
+#include "runtime/mesh/mesh_tools.h"
+
+namespace ergon {
+namespace {
+
+TEST(Sample, CubeHasSixTetrahedraPerCellAndUnitVolume) {
+  const Mesh mesh = sample_mesh(Element::tet4, 3);
+  EXPECT_EQ(mesh.cell_count(), 6 * 27);
+  double volume = 0;
+  for (double v : rest_volumes(mesh)) {
+    EXPECT_GT(v, 0);
+    volume += v;
+  }
+  EXPECT_NEAR(volume, 1, 1e-12);
+}
+
+TEST(Sample, EveryElementOfTheBenchmarkHasASoundMesh) {
+  for (Element element : {Element::tet4, Element::tet10, Element::hex8, Element::tri3, Element::edge2}) {
+    EXPECT_NO_THROW(check_mesh(sample_mesh(element, 2))) << name_of(element);
+  }
+}
+
+TEST(Sample, NoiseHasTheAmplitudeAskedForAndIsTheSameEveryTime) {
+  const Mesh mesh = sample_mesh(Element::tet4, 6);
+  const Eigen::Matrix3Xd x = displaced(mesh.X, 1.0 / 6, 0.15 / 6);
+  EXPECT_NEAR((x - mesh.X).cwiseAbs().maxCoeff(), 0.15 / 6, 1e-15);
+  EXPECT_EQ(x, displaced(mesh.X, 1.0 / 6, 0.15 / 6));
+}
+
+TEST(Sample, EdgesAreFoundOnceEach) {
+  // Euler's formula on the brick cut in six: 8 vertices, 19 edges (12 of the brick, 6 face diagonals, 1 inside).
+  EXPECT_EQ(stencils_on_mesh("edge", sample_mesh(Element::tet4, 1)).size(), 2u * 19u);
+  EXPECT_EQ(stencils_on_mesh("edge", sample_mesh(Element::hex8, 1)).size(), 2u * 12u);
+  EXPECT_EQ(stencils_on_mesh("point", sample_mesh(Element::tet4, 1)).size(), 8u);
+}
+
+TEST(Sample, AGeometryThatAMeshDoesNotHaveIsBadInput) {
+  try {
+    stencils_on_mesh("body_pair", sample_mesh(Element::tet4, 1));
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "no stencils 'body_pair' can be made from a mesh; 'point' and 'edge' can");
+  }
+}
+
+TEST(Sample, ValuesAreWithinTheirRanges) {
+  const Energy energy = read_energy(ERGON_SOURCE_DIR "/energies/contact/ground_friction.energy");
+  for (int attempt = 0; attempt < 20; ++attempt) {
+    for (Role role : {Role::param, Role::lag}) {
+      for (const auto& [name, values] : sample_values(energy, role, attempt)) {
+        for (double value : values) EXPECT_TRUE(energy.find(name)->range.contains(value)) << name << " " << value;
+      }
+    }
+  }
+  EXPECT_THAT(sample_values(energy, Role::param, 3).at("n"), testing::ElementsAre(0, 0, 1));
+}
+
+}  // namespace
+}  // namespace ergon
