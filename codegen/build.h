@@ -1,0 +1,28 @@
+#pragma once
+// Pass 7: an emitted source becomes a shared library, by the C++ compiler of the machine.
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace ergon {
+
+// No compiler, or one that refused the source; what() says which and what to do.
+class BuildError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// $ERGON_CXX, or "g++".
+std::string default_compiler();
+
+// The command line after the compiler's name. -O1: straight-line code of this kind compiles in less time and runs
+// faster than at -O2, whose scheduling lengthens live ranges.
+std::vector<std::string> compiler_flags(int lanes);
+
+// Compiles `source` into `library`. Throws BuildError.
+void build_library(const std::string& compiler, int lanes, const std::filesystem::path& source,
+                   const std::filesystem::path& library);
+
+}  // namespace ergon

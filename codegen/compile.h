@@ -1,0 +1,57 @@
+#pragma once
+// The compiler's main path: from an energy to a loaded kernel.
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "codegen/emit.h"
+#include "codegen/module.h"
+#include "runtime/kernel.h"
+#include "symbolic/energy.h"
+
+namespace ergon {
+
+struct CompileOptions {
+  std::string case_name;                                // one of the energy's cases; "" when it has none
+  int lanes = 1;                                        // 1, 4 or 8
+  std::vector<std::filesystem::path> read_only_caches;  // searched first, e.g. the catalogue compiled with the program
+  std::filesystem::path cache;                          // "" means KernelCache::user_folder()
+  bool use_cached = true;                               // false: build even if a sound kernel is there
+  std::string compiler;                                 // "" means default_compiler()
+  // Called after each pass with its name and the graph as text, when set.
+  std::function<void(const std::string& pass, const std::string& text)> dump;
+};
+
+// Seconds spent in each part.
+struct CompileTimes {
+  double lower = 0, frontier = 0, differentiate = 0, structure = 0, schedule = 0, emit = 0, compile = 0, load = 0;
+  double total() const { return lower + frontier + differentiate + structure + schedule + emit + compile + load; }
+};
+
+// What the passes give before any C++ compiler is asked.
+struct Generated {
+  Module module;
+  std::string source;
+  OperationCounts counts;
+  CompileTimes times;
+};
+
+struct CompiledKernel {
+  std::shared_ptr<void> library;  // keeps the code loaded
+  const ErgonKernel* table = nullptr;
+  std::string source;
+  OperationCounts counts;
+  CompileTimes times;
+  bool cached = false;
+};
+
+// `energy` must outlive the result's module. Throws SourceError for what cannot be compiled.
+Generated generate(const Energy& energy, const CompileOptions& options);
+
+// Also throws BuildError (codegen/build.h).
+CompiledKernel compile(const Energy& energy, const CompileOptions& options);
+
+}  // namespace ergon

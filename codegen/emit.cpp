@@ -1,0 +1,171 @@
+#include "codegen/emit.h"
+
+#include <algorithm>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "codegen/function_text.h"
+#include "codegen/kernel_abi_text.h"
+#include "codegen/prelude.h"
+
+namespace ergon {
+namespace {
+
+std::vector<Output> outputs_to(const std::string& array, const std::vector<int>& values) {
+  std::vector<Output> out;
+  for (size_t i = 0; i < values.size(); ++i) out.push_back({fmt::format("{}[{}]", array, i), values[i]});
+  return out;
+}
+
+std::vector<Output> join(std::vector<Output> a, const std::vector<Output>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+std::string commented(const std::string& text) {
+  std::string out;
+  size_t start = 0;
+  while (start < text.size()) {
+    size_t end = std::min(text.find('\n', start), text.size());
+    std::string line = text.substr(start, end - start);
+    // A backslash at the end of a line would continue the comment.
+    while (!line.empty() && (line.back() == '\\' || line.back() == ' ' || line.back() == '\r')) line.pop_back();
+    out += line.empty() ? "//\n" : "//   " + line + "\n";
+    start = end + 1;
+  }
+  return out;
+}
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + "\"";
+}
+
+void count_calls(const Program& p, const std::vector<int>& code, std::set<std::string>& used) {
+  for (int i : code) {
+    const char* prefix = p[i].lifetime <= Lifetime::uniform ? "s_" : "v_";
+    if (p[i].op == Opcode::sqrt) used.insert(std::string(prefix) + "sqrt");
+    if (p[i].op == Opcode::call) used.insert(std::string(prefix) + name_of(p[i].call));
+  }
+}
+
+std::string entry(const char* name, const char* out_parameters, const char* out_vectors, const std::string& body) {
+  return fmt::format(
+      "static void {}(const double* q_, const double* e_, const double* u, {}) {{\n"
+      "  const V* q = (const V*)q_;\n  const V* e = (const V*)e_;\n{}  (void)q, (void)e, (void)u;\n{}}}\n\n",
+      name, out_parameters, out_vectors, body);
+}
+
+std::string input_table(const Module& m) {
+  std::string out = "static const ErgonInput inputs[] = {\n";
+  for (size_t i = 0; i < m.energy->symbols.size(); ++i) {
+    const Symbol& s = m.energy->symbols[i];
+    if (s.role == Role::dof) continue;
+    const char* role = s.role == Role::param ? "ERGON_PARAM" : s.role == Role::rest ? "ERGON_REST" : "ERGON_LAG";
+    out += fmt::format("  {{{}, {}, {}, {}, {}}},\n", quoted(s.name), role, s.shape.rows, s.shape.cols, m.offsets[i]);
+  }
+  return out + "  {0, 0, 0, 0, 0}};\n";
+}
+
+std::string kernel_table(const Module& m, const OperationCounts& c, int lanes) {
+  bool density = m.points == 0;
+  std::string weights;
+  for (double w : m.weights) weights += (weights.empty() ? "" : ", ") + literal(w);
+  int inputs = 0;
+  for (const Symbol& s : m.energy->symbols) inputs += s.role != Role::dof;
+  std::string out = input_table(m);
+  if (!density) out += fmt::format("static const double weights[] = {{{}}};\n", weights);
+  out += fmt::format(
+      "extern \"C\" __attribute__((visibility(\"default\"))) const ErgonKernel ergon_kernel = {{\n"
+      "  ERGON_KERNEL_ABI, {}, {}, {}, {}, {}, {}, {}, {},\n  {}, inputs, {}, {}, {}, {}, {}, {},\n  {}, {}, {}, {},\n"
+      "  {}, {}, {}, {},\n  prepare_uniforms, prepare_elements, conditions, value_entry, gradient_entry, "
+      "hessian_entry}};\n",
+      lanes, quoted(m.energy->name), quoted(m.case_name), quoted(m.energy->geometry), density ? 1 : 0, m.points,
+      m.q_vectors, density ? "0" : "weights", inputs, m.params, m.raw, c.uniforms, c.elements, m.require.size(),
+      m.active.size(), int{m.constant_gradient}, int{m.constant_hessian}, int{m.zero_hessian}, int{m.psd_hessian},
+      c.value, c.gradient, c.hessian, c.divisions);
+  return out;
+}
+
+std::string header(const Module& m, const OperationCounts& c) {
+  return fmt::format(
+             "// {}{}: kernel made by Ergon from the energy below.\n"
+             "// Operations per lane: value {}, gradient {}, Hessian {} (of these {} divisions, {} square roots, {} "
+             "function calls).\n"
+             "// Kept: {} values per material, {} per element. q: {} components.\n//\n",
+             m.energy->name, m.case_name.empty() ? "" : ", case " + m.case_name, c.value, c.gradient, c.hessian,
+             c.divisions, c.roots, c.calls, c.uniforms, c.elements, m.q_size()) +
+         commented(m.energy->text) + "\n";
+}
+
+}  // namespace
+
+Emitted emit(const Module& m, const Schedule& s, int lanes) {
+  const Program& p = s.program;
+  Slots slots = assign_slots(s);
+  std::vector<Output> value = {{"value[0]", s.value}};
+  std::vector<Output> gradient = join(value, outputs_to("gradient", s.gradient));
+  std::vector<Output> hessian = join(gradient, outputs_to("hessian", s.hessian));
+  std::vector<Output> require = outputs_to("require", s.require);
+
+  // The value entry also gives the smallest margin.
+  auto text = [&](const std::vector<Output>& outputs) {
+    return function_text(p, slots, outputs, false, true, true, "raw");
+  };
+  FunctionText uniforms = function_text(p, slots, outputs_to("u", slots.uniforms), true, false, false, "raw");
+  FunctionText elements = function_text(p, slots, outputs_to("e", slots.elements), false, true, false, "raw");
+  FunctionText conditions = text(join(outputs_to("active", s.active), require));
+  std::vector<Output> margins = outputs_to("V margin", {});
+  for (size_t i = 0; i < s.require.size(); ++i) margins.push_back({fmt::format("const V margin{}", i), s.require[i]});
+  FunctionText value_text = text(join(value, margins));
+  FunctionText gradient_text = text(gradient);
+  FunctionText hessian_text = text(hessian);
+  std::string smallest = "  require[0] = __builtin_inf() - V{};\n";
+  for (size_t i = 0; i < s.require.size(); ++i)
+    smallest += fmt::format("  require[0] = v_min(margin{}, require[0]);\n", i);
+
+  Emitted out;
+  OperationCounts& c = out.counts;
+  c.value = static_cast<int>(text(value).instructions.size());
+  c.gradient = static_cast<int>(gradient_text.instructions.size());
+  c.hessian = static_cast<int>(hessian_text.instructions.size());
+  c.uniforms = static_cast<int>(slots.uniforms.size());
+  c.elements = static_cast<int>(slots.elements.size());
+  for (int i : hessian_text.instructions) {
+    c.divisions += p[i].op == Opcode::divide;
+    c.roots += p[i].op == Opcode::sqrt;
+    c.calls += p[i].op == Opcode::call && p[i].call < Call::abs;
+  }
+  std::set<std::string> used;
+  if (!s.require.empty()) used.insert("v_min");
+  for (const FunctionText* f : {&uniforms, &elements, &conditions, &value_text, &gradient_text, &hessian_text})
+    count_calls(p, f->instructions, used);
+
+  out.source = header(m, c) + prelude(lanes, used) + kKernelAbiText + "\n";
+  out.source += fmt::format(
+      "static void prepare_uniforms(const double* params, double* u) {{\n  (void)params, (void)u;\n{}}}\n\n",
+      uniforms.body);
+  out.source += fmt::format(
+      "static void prepare_elements(const double* raw_, const double* u, double* e_) {{\n"
+      "  const V* raw = (const V*)raw_;\n  V* e = (V*)e_;\n  (void)raw, (void)u, (void)e;\n{}}}\n\n",
+      elements.body);
+  out.source += entry("conditions", "double* active_, double* require_",
+                      "  V* active = (V*)active_;\n  V* require = (V*)require_;\n  (void)active, (void)require;\n",
+                      conditions.body);
+  out.source += entry("value_entry", "double* value_, double* require_",
+                      "  V* value = (V*)value_;\n  V* require = (V*)require_;\n", value_text.body + smallest);
+  out.source += entry("gradient_entry", "double* value_, double* gradient_",
+                      "  V* value = (V*)value_;\n  V* gradient = (V*)gradient_;\n", gradient_text.body);
+  out.source += entry("hessian_entry", "double* value_, double* gradient_, double* hessian_",
+                      "  V* value = (V*)value_;\n  V* gradient = (V*)gradient_;\n  V* hessian = (V*)hessian_;\n",
+                      hessian_text.body);
+  out.source += kernel_table(m, c, lanes);
+  return out;
+}
+
+}  // namespace ergon

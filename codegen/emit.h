@@ -1,0 +1,31 @@
+#pragma once
+// Pass 6: straight-line code becomes self-contained C++ of W lanes, readable and without headers.
+
+#include <string>
+
+#include "codegen/module.h"
+#include "codegen/schedule.h"
+
+namespace ergon {
+
+// Operations per stencil or quadrature point and lane, what is computed once not counted.
+struct OperationCounts {
+  int value = 0;
+  int gradient = 0;   // value and gradient
+  int hessian = 0;    // value, gradient and Hessian
+  int divisions = 0;  // in the Hessian entry point; square roots are counted apart
+  int roots = 0;
+  int calls = 0;     // transcendental functions
+  int uniforms = 0;  // values computed once per material
+  int elements = 0;  // values kept per element
+};
+
+struct Emitted {
+  std::string source;
+  OperationCounts counts;
+};
+
+// The entry points of runtime/kernel.h for vectors of `lanes` doubles (1, 4 or 8).
+Emitted emit(const Module& module, const Schedule& schedule, int lanes);
+
+}  // namespace ergon

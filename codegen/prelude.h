@@ -1,0 +1,14 @@
+#pragma once
+// The opening of an emitted file: the vector type and just the functions that the kernel uses.
+
+#include <set>
+#include <string>
+
+namespace ergon {
+
+// `used` holds names such as "v_log" (over lanes) and "s_sqrt" (one double). Transcendental functions over 4 and 8
+// lanes are those of glibc's libmvec (errors up to 4 ulp, see the glibc manual, "Errors in Math Functions"); one lane
+// uses libm.
+std::string prelude(int lanes, const std::set<std::string>& used);
+
+}  // namespace ergon
