@@ -50,14 +50,18 @@ class GroundContact : public Contact {
   void set_active(const Eigen::Matrix3Xd& x) override;
   // Every vertex keeps at least a tenth of its present gap.
   double largest_step(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& direction) override;
+  double gap_change(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& direction) override;
   // Doubles a stiffness that was not fixed when the smallest gap has come near the rounding of positions.
   bool adapt(const Eigen::Matrix3Xd& x) override;
 
+  bool owns(int potential) const;  // index in the system
   bool has_friction() const;
+  bool reached() const { return reached_; }              // a vertex was within dhat in a state since begin_step
   int active_count() const;                              // vertex-ground pairs within dhat at the last set_active
   int friction_count() const;                            // pairs with a friction force
   double smallest_gap(const Eigen::Matrix3Xd& x) const;  // m, over all free vertices and grounds; +inf without any
   double stiffness(int ground) const;                    // N/m; 0 while open
+  double largest_stiffness() const;
   // J: barrier energy that changes of stiffness have added to the state at the start of the step, since begin_step.
   double energy_added() const;
   // Normal force per active pair at x: vertex, ground, N.
@@ -71,25 +75,30 @@ class GroundContact : public Contact {
  private:
   struct Side {  // one ground with its potentials and present state
     Ground ground;
-    int barrier = -1;
+    std::string name;
+    int barrier = -1;  // indices of the potentials
     int friction = -1;
-    double kappa = 0;
+    double kappa = 0;                                           // N/m
     double start_sum = 0;                                       // m^2, barrier/kappa summed at the start of the step
     double last_gap = std::numeric_limits<double>::infinity();  // m, smallest at the last adapt
-    std::vector<int> active;
-    std::vector<int> sticking;           // vertices with friction
-    std::vector<double> friction_force;  // N, of these
+    std::vector<int> active;                                    // vertices within dhat
+    std::vector<int> rubbing;                                   // vertices with a friction force
+    std::vector<double> friction_force;                         // N, normal force of these
   };
   double gap(const Side& side, const Eigen::Matrix3Xd& x, int vertex) const;
-  void set_barrier_stencils(Side& side);
+  bool is_free(int vertex) const;
+  double reference_force(const Side& side, const Eigen::Matrix3Xd& v, double dt) const;
+  void set_stiffness(Side& side);
 
   System* system_;
   std::vector<Side> sides_;
-  std::vector<int> vertices_;  // free ones that may touch
+  std::vector<int> vertices_;
   Eigen::Matrix3Xd X_;
-  double free_mass_ = 0;  // kg
+  Eigen::VectorXd mass_;  // kg
   Eigen::Vector3d gravity_;
   double energy_added_ = 0;
+  bool reached_ = false;
+  std::vector<int> found_;
 };
 
 // b(gap)/kappa of ground_barrier.energy and its derivative, m^2 and m; zero at and beyond dhat.

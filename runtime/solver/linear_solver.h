@@ -11,7 +11,7 @@
 namespace ergon {
 
 // Fill-reducing ordering: minimum degree is fast to find, nested dissection gives sparser factors of large solids.
-// `automatic` decides by size.
+// `automatic` tries both and keeps the one that needs fewer operations.
 enum class Ordering { automatic, minimum_degree, nested_dissection };
 
 class LinearSolver {

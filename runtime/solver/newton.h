@@ -8,13 +8,15 @@
 #include <string>
 
 #include "runtime/contact/contact.h"
+#include "runtime/solver/line_search.h"
 #include "runtime/solver/linear_solver.h"
 #include "runtime/system.h"
 
 namespace ergon {
 
 struct NewtonOptions {
-  // Converged when the largest component of the Newton step, divided by dt, is at most this; the step is still taken.
+  // Converged when the largest component of the Newton step, divided by dt, is at most this and no active gap changes
+  // by more than a tenth; the step is still taken.
   double tolerance = 1e-4;  // m/s
   double dt = 1;            // s; 1 makes the tolerance one of displacement, for statics
   int max_iterations = 200;
@@ -65,6 +67,12 @@ class Newton {
   const BlockMatrix& matrix() const { return matrix_; }
 
  private:
+  void evaluate_gradient(System& system, const Eigen::Matrix3Xd& x, Contact* contact, NewtonResult& result);
+  bool certainly_converged(const System& system, const NewtonOptions& options, NewtonResult& result) const;
+  double find_direction(System& system, NewtonResult& result);
+  void give_up_line_search(System& system, const Eigen::Matrix3Xd& x, Contact* contact, const LineSearchResult& trial,
+                           bool is_last, NewtonResult& result);
+
   LinearSolver solver_;
   BlockMatrix matrix_;  // kept, with its pattern, from call to call
   Eigen::Matrix3Xd gradient_;

@@ -90,9 +90,14 @@ class TimeStepper {
   StepOptions& options() { return options_; }
 
  private:
-  void set_lags(const State& state, const Eigen::Matrix3Xd& xhat);
+  Eigen::Matrix3Xd predict(const State& state) const;
+  void set_lags(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& xhat);
+  void begin_contact(const State& state, StepRecord& record);
+  NewtonResult solve(const Eigen::Matrix3Xd& start, Eigen::Matrix3Xd& x, StepRecord& record);
+  void advance(State& state, const Eigen::Matrix3Xd& x) const;
+  void report(const State& state, const NewtonResult& result, StepRecord& record) const;
   Energies energies_of(const Evaluation& evaluation, const Eigen::Matrix3Xd& v) const;
-  std::vector<std::string> skipped_parts(const StepRecord& record, bool ever_in_reach) const;
+  std::vector<std::string> skipped_parts() const;
 
   System* system_;
   Eigen::VectorXd mass_;

@@ -1,0 +1,234 @@
+#include "runtime/solver/linear_solver.h"
+
+#include <cholmod.h>
+#include <dlfcn.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "runtime/error.h"
+
+namespace ergon {
+
+namespace {
+
+// Below this many operations per factorisation a second thread of the BLAS gains nothing, and its workers, which spin
+// for a while after each call, would take the cores from evaluation.
+constexpr double flops_worth_threads = 1e9;
+
+// Limits OpenBLAS to one thread while it lives. Does nothing with another BLAS.
+class SingleThreadedBlas {
+ public:
+  explicit SingleThreadedBlas(bool wanted) {
+    if (!wanted || !set_threads() || !get_threads()) return;
+    before_ = get_threads()();
+    if (before_ > 1) set_threads()(1);
+  }
+  ~SingleThreadedBlas() {
+    if (before_ > 1) set_threads()(before_);
+  }
+  SingleThreadedBlas(const SingleThreadedBlas&) = delete;
+  SingleThreadedBlas& operator=(const SingleThreadedBlas&) = delete;
+
+ private:
+  using Set = void (*)(int);
+  using Get = int (*)();
+  static Set set_threads() {
+    static const Set set = reinterpret_cast<Set>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"));
+    return set;
+  }
+  static Get get_threads() {
+    static const Get get = reinterpret_cast<Get>(dlsym(RTLD_DEFAULT, "openblas_get_num_threads"));
+    return get;
+  }
+  int before_ = 0;
+};
+
+// The matrix's pattern as a graph of block rows: ordering it finds the same fill at a ninth of the entries.
+struct BlockGraph {
+  std::vector<int> start;
+  std::vector<int> row;
+
+  explicit BlockGraph(const BlockMatrix& matrix) {
+    start.reserve(static_cast<size_t>(matrix.block_rows()) + 1);
+    row.reserve(matrix.blocks());
+    start.push_back(0);
+    for (int block = 0; block < matrix.block_rows(); ++block) {
+      const auto column = static_cast<size_t>(3 * block);
+      for (int entry = matrix.column_start()[column]; entry < matrix.column_start()[column + 1]; entry += 3) {
+        row.push_back(matrix.row_index()[static_cast<size_t>(entry)] / 3);
+      }
+      start.push_back(static_cast<int>(row.size()));
+    }
+  }
+};
+
+cholmod_sparse lower_triangle(int rows, std::vector<int>& start, std::vector<int>& row, double* values) {
+  cholmod_sparse a{};
+  a.nrow = a.ncol = static_cast<size_t>(rows);
+  a.nzmax = row.size();
+  a.p = start.data();
+  a.i = row.data();
+  a.x = values;
+  a.stype = -1;
+  a.itype = CHOLMOD_INT;
+  a.xtype = values ? CHOLMOD_REAL : CHOLMOD_PATTERN;
+  a.dtype = CHOLMOD_DOUBLE;
+  a.sorted = 1;
+  a.packed = 1;
+  return a;
+}
+
+// CHOLMOD's structs are not const-correct; it reads the matrix only.
+cholmod_sparse view(const BlockMatrix& matrix) {
+  return lower_triangle(matrix.rows(), const_cast<std::vector<int>&>(matrix.column_start()),
+                        const_cast<std::vector<int>&>(matrix.row_index()), const_cast<double*>(matrix.values().data()));
+}
+
+// Nested dissection of graphs smaller than this gains nothing over minimum degree.
+constexpr int smallest_dissected = 100;
+
+}  // namespace
+
+struct LinearSolver::Impl {
+  Ordering ordering;
+  cholmod_common common;
+  cholmod_factor* factor = nullptr;
+  cholmod_dense* solution = nullptr;  // workspace of solve, kept between calls
+  cholmod_dense* work_y = nullptr;
+  cholmod_dense* work_e = nullptr;
+  bool factored = false;
+  bool analysed = false;
+  unsigned long pattern = 0;
+  int rows = 0;
+  long analyses = 0;
+  long factorisations = 0;
+  double entries = 0;
+  double flops = 0;
+
+  explicit Impl(Ordering o) : ordering(o) {
+    cholmod_start(&common);
+    common.print = 0;
+    common.supernodal = CHOLMOD_SUPERNODAL;
+    common.quick_return_if_not_posdef = 1;
+    common.nmethods = 1;
+    common.method[0].ordering = CHOLMOD_GIVEN;
+    common.postorder = 1;
+  }
+  ~Impl() {
+    cholmod_free_factor(&factor, &common);
+    cholmod_free_dense(&solution, &common);
+    cholmod_free_dense(&work_y, &common);
+    cholmod_free_dense(&work_e, &common);
+    cholmod_finish(&common);
+  }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  void check_memory(const char* what) {
+    if (common.status == CHOLMOD_OUT_OF_MEMORY || common.status == CHOLMOD_TOO_LARGE) {
+      throw InputError("not enough memory to " + std::string(what) + " a matrix of " + std::to_string(rows) +
+                       " unknowns; use a coarser mesh");
+    }
+    if (common.status < CHOLMOD_OK) {
+      throw std::logic_error("CHOLMOD cannot " + std::string(what) + " this matrix: status " +
+                             std::to_string(common.status));
+    }
+  }
+
+  // Takes over `factor` if this ordering of the block rows needs fewer operations than what is there.
+  void try_ordering(const BlockMatrix& matrix, BlockGraph& graph, bool dissection) {
+    cholmod_sparse blocks = lower_triangle(matrix.block_rows(), graph.start, graph.row, nullptr);
+    std::vector<int> order(static_cast<size_t>(matrix.block_rows()));
+    const bool ordered = dissection ? cholmod_metis(&blocks, nullptr, 0, 1, order.data(), &common)
+                                    : cholmod_amd(&blocks, nullptr, 0, order.data(), &common);
+    if (!ordered && dissection && common.status == CHOLMOD_NOT_INSTALLED) return try_ordering(matrix, graph, false);
+    check_memory("order");
+    std::vector<int> scalar_order(3 * order.size());
+    for (size_t i = 0; i < order.size(); ++i) {
+      for (int c = 0; c < 3; ++c) scalar_order[3 * i + static_cast<size_t>(c)] = 3 * order[i] + c;
+    }
+    cholmod_sparse a = view(matrix);
+    cholmod_factor* candidate = cholmod_analyze_p(&a, scalar_order.data(), nullptr, 0, &common);
+    check_memory("analyse");
+    if (factor && common.fl >= flops) {
+      cholmod_free_factor(&candidate, &common);
+      return;
+    }
+    cholmod_free_factor(&factor, &common);
+    factor = candidate;
+    entries = common.lnz;
+    flops = common.fl;
+  }
+};
+
+LinearSolver::LinearSolver(Ordering ordering) : impl_(std::make_unique<Impl>(ordering)) {}
+LinearSolver::~LinearSolver() = default;
+LinearSolver::LinearSolver(LinearSolver&&) noexcept = default;
+LinearSolver& LinearSolver::operator=(LinearSolver&&) noexcept = default;
+
+void LinearSolver::analyse(const BlockMatrix& matrix) {
+  Impl& s = *impl_;
+  if (s.analysed && s.pattern == matrix.pattern_id()) return;
+  s.factored = s.analysed = false;
+  cholmod_free_factor(&s.factor, &s.common);
+  s.rows = matrix.rows();
+  if (s.rows > 0) {
+    BlockGraph graph(matrix);
+    const bool small = matrix.block_rows() < smallest_dissected;
+    if (s.ordering != Ordering::nested_dissection) s.try_ordering(matrix, graph, false);
+    if (s.ordering == Ordering::nested_dissection || (s.ordering == Ordering::automatic && !small)) {
+      s.try_ordering(matrix, graph, true);
+    }
+  }
+  s.pattern = matrix.pattern_id();
+  s.analysed = true;
+  ++s.analyses;
+}
+
+std::optional<int> LinearSolver::factor(const BlockMatrix& matrix, double shift) {
+  analyse(matrix);
+  Impl& s = *impl_;
+  s.factored = false;
+  ++s.factorisations;
+  if (s.rows > 0) {
+    const SingleThreadedBlas limit(s.flops < flops_worth_threads);
+    cholmod_sparse a = view(matrix);
+    double beta[2] = {shift, 0};
+    cholmod_factorize_p(&a, beta, nullptr, 0, s.factor, &s.common);
+    s.check_memory("factor");
+    if (s.factor->minor < static_cast<size_t>(s.rows)) {
+      return static_cast<const int*>(s.factor->Perm)[s.factor->minor];
+    }
+  }
+  s.factored = true;
+  return std::nullopt;
+}
+
+void LinearSolver::solve(const Eigen::VectorXd& right_side, Eigen::VectorXd& solution) {
+  Impl& s = *impl_;
+  if (!s.factored) throw std::logic_error("LinearSolver::solve: there is no factor");
+  if (right_side.size() != s.rows) throw std::logic_error("LinearSolver::solve: right side of another size");
+  solution.resize(s.rows);
+  if (s.rows == 0) return;
+  const SingleThreadedBlas limit(s.flops < flops_worth_threads);
+  cholmod_dense b{};
+  b.nrow = b.d = b.nzmax = static_cast<size_t>(s.rows);
+  b.ncol = 1;
+  b.x = const_cast<double*>(right_side.data());
+  b.xtype = CHOLMOD_REAL;
+  b.dtype = CHOLMOD_DOUBLE;
+  cholmod_solve2(CHOLMOD_A, s.factor, &b, nullptr, &s.solution, nullptr, &s.work_y, &s.work_e, &s.common);
+  s.check_memory("solve");
+  const auto* values = static_cast<const double*>(s.solution->x);
+  std::copy(values, values + s.rows, solution.data());
+}
+
+long LinearSolver::analyses() const { return impl_->analyses; }
+long LinearSolver::factorisations() const { return impl_->factorisations; }
+double LinearSolver::factor_entries() const { return impl_->entries; }
+double LinearSolver::factor_flops() const { return impl_->flops; }
+
+}  // namespace ergon

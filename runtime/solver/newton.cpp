@@ -1,0 +1,214 @@
+#include "runtime/solver/newton.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "runtime/solver/stopwatch.h"
+
+namespace ergon {
+
+namespace {
+
+constexpr double largest_gap_change = 0.1;  // of the last Newton step, as a fraction of each active gap
+constexpr double near_limit = 1e3;          // tolerances: below this step rounding may hide the decrease of energy
+constexpr double rounding_gradients = 4;    // a gradient of so many times its rounding counts as zero
+constexpr double first_shift = 1e-8;        // of the mean diagonal
+constexpr double shift_growth = 10;
+constexpr int max_shifts = 20;
+
+struct Largest {
+  double value = 0;
+  int vertex = -1;
+};
+
+Largest largest_free_component(const System& system, const Eigen::Matrix3Xd& field) {
+  Largest largest;
+  for (int v = 0; v < system.vertices(); ++v) {
+    if (system.block_of(v) < 0) continue;
+    const double size = field.col(v).cwiseAbs().maxCoeff();
+    if (!(size <= largest.value)) largest = {size, v};
+  }
+  return largest;
+}
+
+// Any component of the next Newton step p = -H^-1 g is at most this, in m, because H >= diag(curvature):
+// |p_i| <= sqrt(H^-1_ii) sqrt(g' H^-1 g).
+double step_bound(const System& system, const Eigen::Matrix3Xd& gradient, const Eigen::VectorXd& curvature) {
+  double sum = 0, least = std::numeric_limits<double>::infinity();
+  for (int v = 0; v < system.vertices(); ++v) {
+    if (system.block_of(v) < 0) continue;
+    sum += gradient.col(v).squaredNorm() / curvature[v];
+    least = std::min(least, curvature[v]);
+  }
+  return sum == 0 ? 0 : std::sqrt(sum / least);
+}
+
+double mean_diagonal(const BlockMatrix& matrix) {
+  double sum = 0;
+  for (int column = 0; column < matrix.rows(); ++column) {
+    const int entry = matrix.column_start()[static_cast<size_t>(column)] + column % 3;  // the diagonal block is first
+    sum += std::abs(matrix.values()[static_cast<size_t>(entry)]);
+  }
+  return sum / std::max(1, matrix.rows());
+}
+
+}  // namespace
+
+NewtonResult Newton::minimise(System& system, Eigen::Matrix3Xd& x, const NewtonOptions& options, Contact* contact) {
+  NewtonResult result;
+  NewtonSeconds& seconds = result.seconds;
+  LineSearchResult trial;
+
+  evaluate_gradient(system, x, contact, result);
+  if (const std::string outside = unusable(system, result.evaluation); !outside.empty()) {
+    result.reason = "the state at the start is outside " + outside;
+    return result;
+  }
+
+  while (true) {
+    result.residual = largest_free_component(system, gradient_).value;
+    if (certainly_converged(system, options, result)) break;
+    if (result.iterations == options.max_iterations) {
+      const Largest worst = largest_free_component(system, direction_);
+      result.reason = fmt::format(
+          "{} Newton iterations did not reach the tolerance of {:.3g} m/s: the last step is {:.3g} m/s at vertex {}",
+          result.iterations, options.tolerance, result.step_speed, worst.vertex);
+      return result;
+    }
+
+    {
+      const Stopwatch watch(seconds.evaluate);
+      result.evaluation = system.hessian(x, options.projection, gradient_, matrix_);
+      result.indefinite += result.evaluation.indefinite;
+    }
+    const double slope = find_direction(system, result);
+    if (!result.reason.empty()) return result;
+    result.step_speed = largest_free_component(system, direction_).value / options.dt;
+    if (result.iterations == 0) result.first_step_speed = result.step_speed;
+
+    double fraction = 1;
+    bool gaps_settled = true;
+    if (contact) {
+      const Stopwatch watch(seconds.contact);
+      fraction = contact->largest_step(x, direction_);
+      gaps_settled = contact->gap_change(x, direction_) <= largest_gap_change;
+    }
+    const bool is_last = result.step_speed <= options.tolerance && gaps_settled;
+
+    const LineSearchInput input{.x = x,
+                                .direction = direction_,
+                                .at_x = result.evaluation,
+                                .gradient = gradient_,
+                                .slope = slope,
+                                .first_fraction = fraction,
+                                .sufficient_decrease = options.sufficient_decrease,
+                                .max_halvings = options.max_halvings,
+                                .near_limit = result.step_speed <= near_limit * options.tolerance};
+    {
+      const double contact_before = seconds.contact;
+      {
+        const Stopwatch watch(seconds.line_search);
+        line_search(system, contact, input, trial, seconds.contact);
+      }
+      seconds.line_search -= seconds.contact - contact_before;
+    }
+    result.halvings += trial.halvings;
+    if (!trial.found) {
+      give_up_line_search(system, x, contact, trial, is_last, result);
+      return result;
+    }
+
+    result.smallest_fraction = std::min(result.smallest_fraction, trial.fraction);
+    ++result.iterations;
+    x.swap(trial.x);
+    gradient_.swap(trial.gradient);
+    result.evaluation = trial.evaluation;
+    if (contact && contact->adapt(x)) {
+      evaluate_gradient(system, x, contact, result);
+    } else if (is_last) {
+      result.residual = largest_free_component(system, gradient_).value;
+      result.converged = true;
+      break;
+    }
+  }
+  return result;
+}
+
+void Newton::evaluate_gradient(System& system, const Eigen::Matrix3Xd& x, Contact* contact, NewtonResult& result) {
+  if (contact) {
+    const Stopwatch watch(result.seconds.contact);
+    contact->set_active(x);
+  }
+  const Stopwatch watch(result.seconds.evaluate);
+  result.evaluation = system.gradient(x, gradient_);
+}
+
+bool Newton::certainly_converged(const System& system, const NewtonOptions& options, NewtonResult& result) const {
+  if (options.curvature.size() == 0 || options.projection == Projection::none) return false;
+  const double bound = step_bound(system, gradient_, options.curvature) / options.dt;
+  if (!(bound <= options.tolerance)) return false;
+  result.step_speed = bound;
+  result.converged = true;
+  return true;
+}
+
+// Solves H p = -g; where H has no factor or p does not descend, with a diagonal that grows. Returns g . p.
+double Newton::find_direction(System& system, NewtonResult& result) {
+  Eigen::VectorXd right_side(matrix_.rows()), step;
+  for (int v = 0; v < system.vertices(); ++v) {
+    if (const int block = system.block_of(v); block >= 0) right_side.segment<3>(3 * block) = -gradient_.col(v);
+  }
+  std::optional<int> failed;
+  double shift = 0;
+  for (int attempt = 0; attempt <= max_shifts; ++attempt) {
+    {
+      const Stopwatch watch(result.seconds.factor);
+      failed = solver_.factor(matrix_, shift);
+      ++result.factorisations;
+    }
+    if (!failed) {
+      const Stopwatch watch(result.seconds.solve);
+      solver_.solve(right_side, step);
+      const double slope = -right_side.dot(step);
+      if (step.allFinite() && slope <= 0) {
+        direction_.setZero(3, system.vertices());
+        for (int v = 0; v < system.vertices(); ++v) {
+          if (const int block = system.block_of(v); block >= 0) direction_.col(v) = step.segment<3>(3 * block);
+        }
+        return slope;
+      }
+    }
+    ++result.shifts;
+    shift = shift == 0 ? first_shift * mean_diagonal(matrix_) : shift_growth * shift;
+    if (!(shift > 0) || !std::isfinite(shift)) break;
+  }
+  int vertex = -1;
+  for (int v = 0; v < system.vertices() && failed; ++v) {
+    if (system.block_of(v) == *failed / 3) vertex = v;
+  }
+  result.reason = failed ? fmt::format(
+                               "the Hessian has no positive pivot at vertex {}, even with {:.3g} N/m added to its "
+                               "diagonal",
+                               vertex, shift / shift_growth)
+                         : std::string("the Hessian is not finite or gives no direction of descent");
+  return 0;
+}
+
+// The line search found no better state: at the limit of rounding that is the end, anywhere else a failure.
+void Newton::give_up_line_search(System& system, const Eigen::Matrix3Xd& x, Contact* contact,
+                                 const LineSearchResult& trial, bool is_last, NewtonResult& result) {
+  if (contact) contact->set_active(x);
+  const Largest worst = largest_free_component(system, direction_);
+  if (trial.at_rounding) {
+    const Rounding rounding = measure_rounding(system, x, result.evaluation, gradient_);
+    result.at_rounding = is_last || result.residual <= rounding_gradients * rounding.gradient;
+    result.converged = result.at_rounding;
+    if (result.converged) return;
+  }
+  result.reason = fmt::format(
+      "no state along the Newton step is accepted after {} halvings, for {}; the step is {:.3g} m/s at vertex {}",
+      trial.halvings, trial.rejected_by, result.step_speed, worst.vertex);
+}
+
+}  // namespace ergon

@@ -1,0 +1,217 @@
+#include "runtime/solver/time_step.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "runtime/error.h"
+#include "runtime/solver/stopwatch.h"
+
+namespace ergon {
+
+namespace {
+
+bool has_lag(const ErgonKernel& kernel, std::string_view name) {
+  return std::any_of(kernel.inputs, kernel.inputs + kernel.n_inputs,
+                     [name](const ErgonInput& input) { return input.role == ERGON_LAG && name == input.name; });
+}
+
+// The columns of one point of every stencil, one after the other.
+std::vector<double> gather(const Potential& potential, int point, const Eigen::Matrix3Xd& field) {
+  const auto points = static_cast<size_t>(potential.points_per_stencil());
+  std::vector<double> values;
+  values.reserve(3 * static_cast<size_t>(potential.stencil_count()));
+  for (size_t i = static_cast<size_t>(point); i < potential.stencils().size(); i += points) {
+    const auto column = field.col(potential.stencils()[i]);
+    values.insert(values.end(), column.begin(), column.end());
+  }
+  return values;
+}
+
+void set_vector_lags(Potential& potential, const std::string& name, const Eigen::Matrix3Xd& field) {
+  const int points = potential.points_per_stencil();
+  for (int point = 0; point < points; ++point) {
+    const std::string lag = points == 1 ? name : name + std::to_string(point);
+    if (has_lag(potential.kernel(), lag)) potential.set_lag(lag, gather(potential, point, field));
+  }
+}
+
+void add(NewtonSeconds& sum, const NewtonSeconds& part) {
+  sum.evaluate += part.evaluate;
+  sum.factor += part.factor;
+  sum.solve += part.solve;
+  sum.line_search += part.line_search;
+  sum.contact += part.contact;
+}
+
+}  // namespace
+
+TimeStepper::TimeStepper(System& system, Eigen::VectorXd mass, GroundContact* ground, StepOptions options)
+    : system_(&system), mass_(std::move(mass)), ground_(ground), options_(options) {
+  const auto positive = [](const char* name, double value, const char* unit) {
+    if (!(value > 0) || !std::isfinite(value)) {
+      throw InputError(fmt::format("{} is {:g} {}; it must be above 0", name, value, unit));
+    }
+  };
+  positive("dt", options_.dt, "s");
+  positive("tolerance", options_.tolerance, "m/s");
+  if (options_.max_iterations < 1) throw InputError("max_iterations must be at least 1");
+  if (options_.friction_lag_iterations < 1) throw InputError("friction_lag_iterations must be at least 1");
+}
+
+StepRecord TimeStepper::step(State& state) {
+  StepRecord record;
+  Eigen::Matrix3Xd x = state.x;
+  NewtonResult result;
+  {
+    const Stopwatch watch(record.seconds.total);
+    record.dt = options_.dt;
+    record.step = state.step;
+    record.time = state.time;
+
+    const Eigen::Matrix3Xd xhat = predict(state);
+    set_lags(state.x, xhat);
+    if (ground_) begin_contact(state, record);
+    result = solve(state.x, x, record);
+    record.accepted = result.converged || (options_.accept_unconverged && result.iterations > 0);
+    if (record.accepted) advance(state, x);
+
+    record.step = state.step;
+    record.time = state.time;
+  }
+  report(state, result, record);
+  return record;
+}
+
+// Where the vertices go without forces.
+Eigen::Matrix3Xd TimeStepper::predict(const State& state) const {
+  Eigen::Matrix3Xd xhat = state.x + options_.dt * state.v;
+  for (int v = 0; v < system_->vertices(); ++v) {
+    if (system_->block_of(v) < 0) xhat.col(v) = state.x.col(v);
+  }
+  return xhat;
+}
+
+void TimeStepper::set_lags(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& xhat) {
+  lagged_dt_.resize(static_cast<size_t>(system_->potential_count()), 0);
+  for (int i = 0; i < system_->potential_count(); ++i) {
+    Potential& potential = system_->potential(i);
+    if (ground_ && ground_->owns(i)) continue;
+    double& lagged_dt = lagged_dt_[static_cast<size_t>(i)];
+    if (lagged_dt != options_.dt && has_lag(potential.kernel(), "dt")) potential.set_lag("dt", {options_.dt});
+    lagged_dt = options_.dt;
+    if (potential.kernel().density) continue;
+    set_vector_lags(potential, "xhat", xhat);
+    set_vector_lags(potential, "xlag", x);
+  }
+}
+
+void TimeStepper::begin_contact(const State& state, StepRecord& record) {
+  const Stopwatch watch(record.seconds.contact);
+  ground_->begin_step(state.x, state.v, options_.dt);
+  ground_->lag_friction(state.x, state.x, options_.dt);
+}
+
+// Newton, repeated with new normal forces of friction until these have settled.
+NewtonResult TimeStepper::solve(const Eigen::Matrix3Xd& start, Eigen::Matrix3Xd& x, StepRecord& record) {
+  NewtonOptions newton;
+  newton.dt = options_.dt;
+  newton.tolerance = options_.tolerance;
+  newton.max_iterations = options_.max_iterations;
+  newton.projection = options_.projection;
+  newton.curvature = mass_ / (options_.dt * options_.dt);
+  const bool friction = ground_ && ground_->has_friction();
+
+  NewtonResult result;
+  while (true) {
+    result = newton_.minimise(*system_, x, newton, ground_);
+    ++record.friction_iterations;
+    record.newton_iterations += result.iterations;
+    record.factorisations += result.factorisations;
+    record.halvings += result.halvings;
+    record.shifts += result.shifts;
+    record.indefinite += result.indefinite;
+    add(record.seconds, result.seconds);
+    if (!friction || !result.converged) break;
+
+    const Stopwatch watch(record.seconds.contact);
+    if (record.friction_iterations == 1 || record.friction_iterations < options_.friction_lag_iterations) {
+      record.friction_change = ground_->lag_friction(x, start, options_.dt);
+    }
+    if (record.friction_change <= options_.friction_tolerance) break;
+    if (record.friction_iterations >= options_.friction_lag_iterations) break;
+  }
+  if (!friction) record.friction_iterations = 0;
+  return result;
+}
+
+void TimeStepper::advance(State& state, const Eigen::Matrix3Xd& x) const {
+  state.v = (x - state.x) / options_.dt;
+  state.x = x;
+  state.step += 1;
+  state.time += options_.dt;
+}
+
+void TimeStepper::report(const State& state, const NewtonResult& result, StepRecord& record) const {
+  record.converged = result.converged;
+  record.reason = result.reason;
+  record.residual = result.residual;
+  record.step_speed = result.step_speed;
+  record.energy = energies_of(result.evaluation, state.v);
+  if (ground_) {
+    record.contacts = ground_->active_count();
+    record.smallest_gap = ground_->smallest_gap(state.x);
+    record.barrier_stiffness = ground_->largest_stiffness();
+    record.energy_added = ground_->energy_added();
+  }
+  record.skipped = skipped_parts();
+}
+
+Energies TimeStepper::energies(const State& state) {
+  set_lags(state.x, predict(state));
+  if (ground_) {
+    ground_->begin_step(state.x, state.v, options_.dt);
+    ground_->lag_friction(state.x, state.x, options_.dt);
+    ground_->set_active(state.x);
+  }
+  return energies_of(system_->value(state.x), state.v);
+}
+
+Energies TimeStepper::energies_of(const Evaluation& evaluation, const Eigen::Matrix3Xd& v) const {
+  Energies energies;
+  for (int i = 0; i < system_->potential_count(); ++i) {
+    const Potential& potential = system_->potential(i);
+    if (has_lag(potential.kernel(), "dt")) continue;
+    const double value = evaluation.by_potential[static_cast<size_t>(i)];
+    energies.total += value;
+    const auto same = std::find_if(energies.stored.begin(), energies.stored.end(),
+                                   [&](const auto& entry) { return entry.first == potential.name(); });
+    if (same != energies.stored.end()) {
+      same->second += value;
+    } else {
+      energies.stored.emplace_back(potential.name(), value);
+    }
+  }
+  for (int i = 0; i < mass_.size(); ++i) energies.kinetic += mass_[i] / 2 * v.col(i).squaredNorm();
+  energies.total += energies.kinetic;
+  return energies;
+}
+
+std::vector<std::string> TimeStepper::skipped_parts() const {
+  std::vector<std::string> skipped = system_->skipped();
+  if (!ground_) {
+    skipped.emplace_back("contact: the scene has no ground");
+    return skipped;
+  }
+  if (!ground_->reached()) skipped.emplace_back("contact: no vertex came within dhat of the ground");
+  if (!ground_->has_friction()) {
+    skipped.emplace_back("friction: no ground has a coefficient of friction");
+  } else if (ground_->friction_count() == 0) {
+    skipped.emplace_back("friction: no vertex within dhat of the ground");
+  }
+  return skipped;
+}
+
+}  // namespace ergon
