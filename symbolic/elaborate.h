@@ -10,7 +10,8 @@
 //   Scalar power(a, b);                              any other exponent
 //   Scalar call(Function f, const std::vector<Scalar>& arguments);
 //   Scalar input(const Symbol& symbol, int component);          column by column
-//   void named(const std::string& let, int component, int size, const Scalar& value);   a let's component was formed
+//   void named(const std::string& let, int component, int size, const Scalar& value);   a let's component was formed;
+//                                                    it may return a Scalar that stands for it from then on
 
 #include <string>
 #include <vector>

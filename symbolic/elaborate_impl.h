@@ -1,9 +1,12 @@
 #pragma once
 // The walk over an energy's expressions, in the order of their text.
 
+#include <algorithm>
 #include <cstdlib>
 #include <map>
 #include <optional>
+#include <stdexcept>
+#include <type_traits>
 
 #include "symbolic/constant.h"
 #include "symbolic/elaborate.h"
@@ -20,6 +23,9 @@ class Elaborator {
   explicit Elaborator(A& algebra) : a_(algebra), op_(algebra) {}
 
   Elaborated<S> run(const Energy& energy, const std::string& case_name) {
+    if (energy.cases.empty() ? !case_name.empty()
+                             : std::count(energy.cases.begin(), energy.cases.end(), case_name) == 0)
+      throw std::invalid_argument("'" + energy.name + "' has no case '" + case_name + "'");
     for (const Symbol& symbol : energy.symbols) {
       T t{symbol.shape, {}};
       for (int i = 0; i < symbol.shape.size(); ++i) t.at.push_back(a_.input(symbol, i));
@@ -28,7 +34,13 @@ class Elaborator {
     for (const Let& let : energy.lets) {
       if (!let.case_name.empty() && let.case_name != case_name) continue;
       T t = tensor(*let.expression);
-      for (int i = 0; i < t.shape.size(); ++i) a_.named(let.name, i, t.shape.size(), t.at[static_cast<size_t>(i)]);
+      for (int i = 0; i < t.shape.size(); ++i) {
+        S& component = t.at[static_cast<size_t>(i)];
+        if constexpr (std::is_void_v<decltype(a_.named(let.name, i, t.shape.size(), component))>)
+          a_.named(let.name, i, t.shape.size(), component);
+        else
+          component = a_.named(let.name, i, t.shape.size(), component);
+      }
       names_.insert_or_assign(let.name, std::move(t));
     }
     S value = scalar(*energy.value);

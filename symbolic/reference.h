@@ -21,6 +21,8 @@ struct ReferenceValue {
   std::vector<double> require;   // margins
 };
 
+// What has no real and finite result (log of a negative number, division by zero) is NaN. Throws std::invalid_argument
+// when a symbol has no value, or not as many components as it should.
 ReferenceValue evaluate_reference(const Energy& energy, const std::string& case_name, const Inputs& inputs,
                                   int digits = 50);
 
