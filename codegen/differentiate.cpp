@@ -49,6 +49,8 @@ NodeId partial(Graph& g, NodeId id, size_t k) {
       return g.call(Call::select, {g.subtract(a, b), k == 0 ? one : zero, k == 0 ? zero : one});
     case Call::select:
       return k == 0 ? zero : g.call(Call::select, {a, k == 1 ? one : zero, k == 1 ? zero : one});
+    case Call::keep:
+      return one;
   }
   throw std::logic_error("differentiate: unknown call");
 }

@@ -42,8 +42,8 @@ void reduce(Factor& f) {
 }  // namespace
 
 const char* name_of(Call call) {
-  static const char* const names[] = {"log",  "exp",  "log1p", "expm1", "sin", "cos", "tan", "asin",
-                                      "acos", "atan", "atan2", "pow",   "abs", "min", "max", "select"};
+  static const char* const names[] = {"log",  "exp",   "log1p", "expm1", "sin", "cos", "tan",    "asin", "acos",
+                                      "atan", "atan2", "pow",   "abs",   "min", "max", "select", "keep"};
   return names[static_cast<int>(call)];
 }
 
@@ -81,6 +81,8 @@ double evaluate(Call call, const std::vector<double>& a) {
       return std::max(a[0], a[1]);
     case Call::select:
       return a[0] > 0 ? a[1] : a[2];
+    case Call::keep:
+      return a[0];
   }
   throw std::logic_error("unknown call");
 }

@@ -35,8 +35,10 @@ struct Factor {
   bool operator==(const Factor&) const = default;
 };
 
-// Functions of a graph. select(c, a, b) is a where c > 0, else b.
-enum class Call { log, exp, log1p, expm1, sin, cos, tan, asin, acos, atan, atan2, pow, abs, min, max, select };
+// Functions of a graph. select(c, a, b) is a where c > 0, else b. keep(a) is a, as a value that nothing is simplified
+// across: the author's own intermediate results that do not depend on the degrees of freedom, which are computed once
+// and read.
+enum class Call { log, exp, log1p, expm1, sin, cos, tan, asin, acos, atan, atan2, pow, abs, min, max, select, keep };
 const char* name_of(Call call);
 // The function's value in double precision.
 double evaluate(Call call, const std::vector<double>& arguments);

@@ -71,8 +71,12 @@ class GraphAlgebra {
     return id;
   }
 
-  void named(const std::string& let, int component, int size, const NodeId& value) {
-    graph_.set_name(value, size == 1 ? let : let + std::to_string(component));
+  // Lets of parameters and rest or lag data alone become values of their own.
+  NodeId named(const std::string& let, int component, int size, NodeId value) {
+    if (graph_[value].kind != Node::Kind::input && !graph_.is_constant(value) && !moves(value))
+      value = graph_.call(Call::keep, {value});
+    graph_.set_name(value, size == 1 ? let : let + "_" + std::to_string(component));
+    return value;
   }
 
  private:
@@ -82,8 +86,21 @@ class GraphAlgebra {
     return name + std::to_string(component % shape.rows) + std::to_string(component / shape.rows);
   }
 
+  // Whether the node depends on a degree of freedom.
+  bool moves(NodeId id) {
+    while (moves_.size() < static_cast<size_t>(graph_.size())) {
+      NodeId next = static_cast<NodeId>(moves_.size());
+      const Node& n = graph_[next];
+      bool m = n.kind == Node::Kind::input && (n.source == Source::q || n.source == Source::point);
+      for (NodeId o : graph_.operands(next)) m = m || moves_[static_cast<size_t>(o)];
+      moves_.push_back(m);
+    }
+    return moves_[static_cast<size_t>(id)];
+  }
+
   Module& module_;
   Graph& graph_;
+  std::vector<char> moves_;
 };
 
 }  // namespace

@@ -46,7 +46,7 @@ class Scheduler {
       case Node::Kind::call: {
         std::vector<int> a;
         for (NodeId o : n.arguments) a.push_back(value(o));
-        v = p_.call(n.call, a[0], a.size() > 1 ? a[1] : -1, a.size() > 2 ? a[2] : -1);
+        v = n.call == Call::keep ? a[0] : p_.call(n.call, a[0], a.size() > 1 ? a[1] : -1, a.size() > 2 ? a[2] : -1);
         break;
       }
     }

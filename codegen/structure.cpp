@@ -48,7 +48,8 @@ std::vector<char> find_nonnegative(const Module& module) {
         });
         break;
       case Node::Kind::call:
-        nonnegative = n.call == Call::exp || n.call == Call::abs;
+        nonnegative = n.call == Call::exp || n.call == Call::abs ||
+                      (n.call == Call::keep && out[static_cast<size_t>(n.arguments[0])]);
         break;
     }
     out[static_cast<size_t>(id)] = nonnegative;
