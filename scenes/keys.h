@@ -85,8 +85,10 @@ void read_section(const toml::table& table, const Section<T>& section, const std
   }
   for (const Key<T>& key : section.keys)
     if (key.required && !out.wrote(key.text.name))
-      throw SourceError(out.place, fmt::format("{} lacks the key '{}': {}{}", section.heading, key.text.name,
-                                               key.text.help, key.text.unit == "1" ? "" : ", in " + key.text.unit));
+      throw SourceError(out.place,
+                        fmt::format("{} lacks {}: {}{}", section.heading,
+                                    key.section ? key.section().heading : fmt::format("the key '{}'", key.text.name),
+                                    key.text.help, key.text.unit == "1" ? "" : ", in " + key.text.unit));
   if (section.check) section.check(file, out);
 }
 

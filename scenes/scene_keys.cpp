@@ -1,5 +1,6 @@
 #include "scenes/scene_keys.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace ergon {
@@ -117,6 +118,11 @@ void check_object(const std::string&, const SceneObject& object) {
                       fmt::format("object '{}' {}", object.name,
                                   object.box ? "has both 'mesh' and 'box'; keep one of them"
                                              : "lacks 'mesh' (a file) or 'box' (size and cells)"));
+  const char* endings[] = {".msh", ".obj", ".stl", ".ply"};
+  if (object.wrote("mesh") && std::none_of(std::begin(endings), std::end(endings),
+                                           [&](const char* ending) { return object.mesh.ends_with(ending); }))
+    throw SourceError(object.at("mesh"),
+                      fmt::format("'mesh' must end in .msh, .obj, .stl or .ply, found \"{}\"", object.mesh));
   if (object.wrote("max_edge") && !surface)
     throw SourceError(object.at("max_edge"),
                       "'max_edge' has no use here: it is for surface meshes (.obj, .stl, .ply), which are filled with "

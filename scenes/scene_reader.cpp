@@ -16,7 +16,9 @@ Scene read_scene_text(std::string_view text, const std::string& file) {
     const toml::table table = toml::parse(text, file);
     read_section(table, scene_section(), file, scene);
   } catch (const toml::parse_error& bad) {
-    throw SourceError(place_of(bad.source(), file), std::string(bad.description()));
+    std::string what(bad.description());
+    if (what.find("unescaped control characters") != std::string::npos) what = "this string is not closed in its line";
+    throw SourceError(place_of(bad.source(), file), what);
   }
   return scene;
 }

@@ -38,7 +38,7 @@ void append_components(const toml::node& node, const std::string& key, const std
                        std::vector<Quantity>& out) {
   const toml::array* array = node.as_array();
   if (array == nullptr) {
-    out.push_back(read_quantity(node, key, file));
+    out.push_back(read_quantity(node, key, "a number or a string with a unit", file));
     return;
   }
   for (const toml::node& item : *array) append_components(item, key, file, out);
@@ -60,19 +60,18 @@ std::string describe(const toml::node& node) {
   return "a date or time";
 }
 
-Quantity read_quantity(const toml::node& node, const std::string& key, const std::string& file) {
+Quantity read_quantity(const toml::node& node, const std::string& key, const std::string& expected,
+                       const std::string& file) {
+  auto mismatch = [&] { fail(node, file, fmt::format("'{}' must be {}, found {}", key, expected, describe(node))); };
   if (auto v = node.as_integer()) return {static_cast<double>(v->get()), {}, describe(node)};
   if (auto v = node.as_floating_point()) return {v->get(), {}, describe(node)};
   auto text = node.as_string();
-  if (text == nullptr)
-    fail(node, file, fmt::format("'{}' must be a number or a string with a unit, found {}", key, describe(node)));
+  if (text == nullptr) mismatch();
   const std::string& s = text->get();
   double number = 0;
   const char* begin = s.data() + (!s.empty() && s[0] == '+' ? 1 : 0);
   auto [end, error] = std::from_chars(begin, s.data() + s.size(), number);
-  if (error != std::errc() || !std::isfinite(number))
-    fail(node, file,
-         fmt::format("'{}' must be a number or a string with a unit such as \"1 m\", found \"{}\"", key, s));
+  if (error != std::errc() || !std::isfinite(number)) mismatch();
   std::string unit_text(end, s.data() + s.size());
   size_t first = unit_text.find_first_not_of(' ');
   if (first == std::string::npos) return {number, {}, s};
@@ -111,13 +110,11 @@ ParamValue read_param(const toml::key& key, const toml::node& node, const std::s
 }
 
 double read_number(const toml::node& node, const ValueRule& rule, const std::string& file) {
-  if (!node.is_number() && !node.is_string())
-    fail(node, file, fmt::format("'{}' must be {}, found {}", rule.key, expected_number(rule), describe(node)));
-  Quantity q = read_quantity(node, rule.key, file);
+  Quantity q = read_quantity(node, rule.key, expected_number(rule), file);
   if (q.unit && *q.unit != parse_unit(rule.unit).unit)
     fail(node, file,
-         fmt::format("'{}' must be in {}, found \"{}\", which is in {}", rule.key,
-                     rule.unit == "1" ? "1 (no unit)" : rule.unit, q.text, to_string(*q.unit)));
+         fmt::format("'{}' {}, found \"{}\", which is in {}", rule.key,
+                     rule.unit == "1" ? "has no unit" : "must be in " + rule.unit, q.text, to_string(*q.unit)));
   if (!rule.range.contains(q.value))
     fail(node, file,
          fmt::format("'{}' must be in {}, found {}", rule.key, in_range(rule), with_unit(q.value, rule.unit)));

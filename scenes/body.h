@@ -1,0 +1,26 @@
+#pragma once
+// The mesh of one object: read or made, filled, moved to its start, checked, and reordered for memory.
+
+#include <string>
+#include <vector>
+
+#include "runtime/mesh/mesh.h"
+#include "scenes/scene.h"
+
+namespace ergon {
+
+struct Body {
+  std::string name;
+  Mesh mesh;                     // in the order of its source, moved to its start
+  Mesh ordered;                  // the same in the order in which it is computed
+  std::vector<int> vertex_from;  // vertex i of `ordered` is vertex vertex_from[i] of `mesh`
+  std::vector<int> fixed;        // vertices of `ordered` that never move
+  std::vector<int> surface;      // vertices of `ordered` that may touch something
+  int first_vertex = 0;          // of `ordered` among all vertices of the scene
+};
+
+// `folder` is what paths are relative to. Throws SourceError at the scene's line for whatever the mesh functions
+// refuse: missing and broken files, open surfaces, inverted or flat cells; and for a `fixed` box that holds no vertex.
+Body load_body(const SceneObject& object, const std::string& folder);
+
+}  // namespace ergon

@@ -1,0 +1,49 @@
+#pragma once
+// From a scene to what can be stepped: energies read and checked, meshes loaded, the kernels that the scene uses
+// compiled (and no others), potentials, ground contact, the first state.
+
+#include <Eigen/Core>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "runtime/contact/ground.h"
+#include "runtime/potential.h"
+#include "runtime/solver/time_step.h"
+#include "runtime/system.h"
+#include "scenes/body.h"
+#include "scenes/catalogue.h"
+#include "scenes/scene.h"
+#include "symbolic/energy.h"
+
+namespace ergon {
+
+// Compiles or loads the kernel of one case of an energy ("" when it has no cases).
+using KernelSource = std::function<Kernel(const Energy& energy, const std::string& case_name)>;
+
+struct BuildSeconds {
+  double energies = 0;  // read and checked
+  double meshes = 0;    // read, filled, reordered
+  double kernels = 0;   // compiled or loaded
+  double setup = 0;     // masses, potentials, contact
+  double total() const { return energies + meshes + kernels + setup; }
+};
+
+struct BuiltScene {
+  std::vector<Body> bodies;
+  std::unique_ptr<System> system;
+  std::unique_ptr<GroundContact> ground;  // null without grounds
+  Eigen::VectorXd mass;                   // kg, per vertex
+  State start;
+  StepOptions step;
+  long steps = 0;
+  std::vector<std::string> skipped;  // what was left out, "part: reason"
+  BuildSeconds seconds;
+};
+
+// Throws SourceError at the scene's line, or in an energy file, for everything that does not fit together; all of it
+// that can be found without compiling is found before a kernel is asked for. `scene` need not outlive the result.
+BuiltScene build_scene(const Scene& scene, const Catalogue& catalogue, const KernelSource& kernels);
+
+}  // namespace ergon
