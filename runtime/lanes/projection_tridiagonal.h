@@ -9,10 +9,10 @@ namespace {
 
 template <int N>
 struct Tridiagonal {
-  Real d[N];                 // diagonal of T
-  Real e[N];                 // e[i] = T(i + 1, i); e[N - 1] = 0
-  Real u[N * (N + 1) / 2];   // u[i](j) at i*(i + 1)/2 + j, j < i
-  Real scale[N];             // of H[i], i >= 2
+  Real d[N];                // diagonal of T
+  Real e[N];                // e[i] = T(i + 1, i); e[N - 1] = 0
+  Real u[N * (N + 1) / 2];  // u[i](j) at i*(i + 1)/2 + j, j < i
+  Real scale[N];            // of H[i], i >= 2
 };
 
 // On entry the matrix stands in t.u, packed, no entry above 1; it is replaced by the Householder vectors.

@@ -54,11 +54,12 @@ inline Mask either(Mask a, Mask b) { return {static_cast<__mmask8>(a.k | b.k)}; 
 inline Mask negate(Mask a) { return {static_cast<__mmask8>(~a.k)}; }
 inline unsigned bits(Mask a) { return a.k; }
 inline Mask from_bits(unsigned lanes) { return {static_cast<__mmask8>(lanes)}; }
-inline Real sqrt(Real a) { return _mm512_sqrt_pd(a); }
+inline Real sqrt(Real a) { return _mm512_maskz_sqrt_pd(0xff, a); }
 
-// 1/sqrt(a) for positive normal a: 14 bits from the processor, then one step of fourth order. Two units in the last place.
+// 1/sqrt(a) for positive normal a: 14 bits from the processor, then one step of fourth order. Two units in the last
+// place.
 inline Real rsqrt(Real a) {
-  Real y = _mm512_rsqrt14_pd(a);
+  Real y = _mm512_maskz_rsqrt14_pd(0xff, a);
   Real h = 1 - a * y * y;
   return y + y * h * (0.5 + h * (0.375 + h * 0.3125));
 }
