@@ -1,0 +1,31 @@
+#pragma once
+// Measurements: kernels on a mesh, the compiler, whole scenes.
+
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "tools/rows.h"
+
+namespace ergon {
+
+struct BenchKernels {
+  std::vector<std::string> energies;  // empty: the catalogue
+  std::string element;                // "": one that fits each density
+  std::string entry;                  // value, gradient, hessian; "": all three
+  std::string projection = "clamp";
+  std::vector<std::string> set;  // inputs by NAME=VALUE; the others are chosen within their ranges
+  int threads = 1;
+  int cells = 40;  // per edge of a cube
+};
+// One row per energy, case and entry. Wall-clock time per call, the median of at least five calls and one second,
+// after a first call that builds what later calls reuse. Throws SourceError and InputError.
+void bench_kernels(const BenchKernels& options, Rows& rows);
+
+struct BenchCompile {
+  std::vector<std::string> energies;  // empty: the catalogue
+};
+// Two rows per energy and case: from nothing, and again with the cache that the first left.
+void bench_compile(const BenchCompile& options, Rows& rows);
+
+}  // namespace ergon

@@ -1,0 +1,120 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "runtime/error.h"
+#include "runtime/lanes/lanes.h"
+#include "tools/assignments.h"
+#include "tools/bench.h"
+#include "tools/choices.h"
+#include "tools/installation.h"
+#include "tools/problem.h"
+#include "tools/sample.h"
+
+namespace ergon {
+namespace {
+
+// The first sample values at which the energy and its gradient are finite and all `require` conditions hold, with the
+// given ones in their place. Looked for on a small mesh of the same shape.
+Values usable_values(const Energy& energy, const Kernel& kernel, Element element, const Values& given) {
+  const Mesh mesh = sample_mesh(element, 3);
+  const Eigen::Matrix3Xd x = displaced(mesh.X, 1.0 / 3, 0.15 / 3);
+  const std::vector<int> stencils =
+      energy.kind == Energy::Kind::density ? std::vector<int>() : stencils_on_mesh(energy.geometry, mesh);
+  constexpr int attempts = 1000;
+  for (int attempt = 0; attempt < attempts; ++attempt) {
+    Values values = given;
+    for (const Symbol* symbol : needed_inputs(energy)) {
+      if (!values.contains(symbol->name)) {
+        values[symbol->name] = sample_values(energy, symbol->role, attempt).at(symbol->name);
+      }
+    }
+    System system = make_system(energy, kernel, mesh, stencils, values);
+    Eigen::Matrix3Xd gradient;
+    const Evaluation at = system.gradient(x, gradient);
+    if (at.require > 0 && std::isfinite(at.value) && gradient.allFinite()) return values;
+  }
+  throw InputError(fmt::format("no inputs of {} were found at which it is defined; give some with --set", energy.name));
+}
+
+// Seconds of one call.
+template <class Call>
+double median_seconds(const Call& call) {
+  using Clock = std::chrono::steady_clock;
+  call();
+  std::vector<double> seconds;
+  double sum = 0;
+  while (seconds.size() < 5 || (sum < 1 && seconds.size() < 1000)) {
+    const Clock::time_point start = Clock::now();
+    call();
+    seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
+    sum += seconds.back();
+  }
+  const auto middle = seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2);
+  std::nth_element(seconds.begin(), middle, seconds.end());
+  return *middle;
+}
+
+void bench_case(const Energy& energy, const std::string& case_name, const BenchKernels& options, Rows& rows) {
+  const std::vector<std::string> entries = {"value", "gradient", "hessian"};
+  if (!options.entry.empty()) chosen("--entry", options.entry, entries);
+  const Projection projection = projection_named(options.projection);
+  const bool density = energy.kind == Energy::Kind::density;
+  Element element = density ? default_element(energy) : Element::tet4;
+  if (!options.element.empty()) element = element_named(options.element);
+  if (density) check_element(energy, element);
+
+  const Kernel kernel = load_kernel(energy, case_name, lanes::best_lanes());
+  const Values values = usable_values(energy, kernel, element, read_assignments(energy, options.set));
+  const Mesh mesh = sample_mesh(element, options.cells);
+  const std::vector<int> stencils = density ? std::vector<int>() : stencils_on_mesh(energy.geometry, mesh);
+  const double cell = 1.0 / options.cells;
+  const Eigen::Matrix3Xd x = displaced(mesh.X, cell, 0.15 * cell);
+  System system = make_system(energy, kernel, mesh, stencils, values);
+  Eigen::Matrix3Xd gradient;
+  BlockMatrix hessian;
+
+  for (const std::string& entry : entries) {
+    if (!options.entry.empty() && entry != options.entry) continue;
+    double seconds = 0;
+    int operations = 0;
+    if (entry == "value") {
+      seconds = median_seconds([&] { system.value(x); });
+      operations = kernel->operations_value;
+    } else if (entry == "gradient") {
+      seconds = median_seconds([&] { system.gradient(x, gradient); });
+      operations = kernel->operations_gradient;
+    } else {
+      seconds = median_seconds([&] { system.hessian(x, projection, gradient, hessian); });
+      operations = kernel->operations_hessian;
+    }
+    const Potential& potential = system.potential(0);
+    const int elements = potential.stencil_count();
+    rows.add({{"energy", case_name.empty() ? energy.name : energy.name + "/" + case_name},
+              {"element", density ? name_of(element) : energy.geometry},
+              {"entry", entry},
+              {"projection", entry == "hessian" ? options.projection : "none"},
+              {"lanes", kernel->lanes},
+              {"precision", "double"},
+              {"threads", options.threads},
+              {"elements", elements},
+              {"ns_per_element", seconds * 1e9 / elements},
+              {"ns_per_point", seconds * 1e9 / elements / potential.quadrature_points()},
+              {"assembled", entry != "value"},
+              {"operations", operations}});
+  }
+}
+
+}  // namespace
+
+void bench_kernels(const BenchKernels& options, Rows& rows) {
+  set_threads(options.threads);
+  for (const std::string& name : options.energies.empty() ? catalogue_names() : options.energies) {
+    const Energy energy = find_energy(name);
+    for (const std::string& case_name : cases_of(energy)) bench_case(energy, case_name, options, rows);
+  }
+}
+
+}  // namespace ergon

@@ -1,0 +1,61 @@
+// ergon bench: how fast kernels, the compiler and scenes are here.
+
+#include <memory>
+#include <ostream>
+
+#include "tools/bench.h"
+#include "tools/command.h"
+
+namespace ergon {
+namespace {
+
+void add_kernels(CLI::App& bench, Run& run) {
+  CLI::App* command = bench.add_subcommand("kernels", "Evaluation and assembly on a cube of cells, displaced by noise");
+  auto options = std::make_shared<BenchKernels>();
+  auto json = std::make_shared<bool>(false);
+  command->add_option("--energy", options->energies, "name or file; may be repeated; default: the catalogue")
+      ->take_all();
+  command->add_option("--element", options->element, "Tet4, Tet10, Hex8, Tri3, Edge2; default: one that fits");
+  command->add_option("--entry", options->entry, "value, gradient or hessian; default: all three");
+  command->add_option("--project", options->projection, "negative eigenvalues: clamp, abs or none");
+  command->add_option("--set", options->set, "NAME=VALUE of an input; the others are chosen within their ranges")
+      ->take_all();
+  command->add_option("--threads", options->threads, "threads to use");
+  command->add_option("--cells", options->cells, "cells per edge of the cube");
+  command->add_flag("--json", *json, "one JSON object per line instead of a table");
+  command->callback([options, json, &run] {
+    run = [options, json](std::ostream& out) {
+      Rows rows(out, *json);
+      bench_kernels(*options, rows);
+      return exit_done;
+    };
+  });
+}
+
+void add_compile(CLI::App& bench, Run& run) {
+  CLI::App* command =
+      bench.add_subcommand("compile", "From an energy file to a loaded kernel, from nothing and cached");
+  auto options = std::make_shared<BenchCompile>();
+  auto json = std::make_shared<bool>(false);
+  command->add_option("--energy", options->energies, "name or file; may be repeated; default: the catalogue")
+      ->take_all();
+  command->add_flag("--json", *json, "one JSON object per line instead of a table");
+  command->callback([options, json, &run] {
+    run = [options, json](std::ostream& out) {
+      Rows rows(out, *json);
+      bench_compile(*options, rows);
+      return exit_done;
+    };
+  });
+}
+
+}  // namespace
+
+void add_bench_command(CLI::App& app, Run& run) {
+  CLI::App* command = app.add_subcommand("bench", "Measures kernels, the compiler, or a scene");
+  command->require_subcommand(1);
+  add_kernels(*command, run);
+  add_compile(*command, run);
+}
+
+}  // namespace ergon

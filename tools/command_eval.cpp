@@ -1,0 +1,107 @@
+// ergon eval ENERGY: value and derivatives of any energy on any mesh and state, to hold other programs against.
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <ostream>
+
+#include "runtime/error.h"
+#include "runtime/lanes/lanes.h"
+#include "runtime/mesh/mesh_import.h"
+#include "tools/assignments.h"
+#include "tools/choices.h"
+#include "tools/command.h"
+#include "tools/installation.h"
+#include "tools/matrix_market.h"
+#include "tools/positions.h"
+#include "tools/problem.h"
+#include "tools/rows.h"
+
+namespace ergon {
+namespace {
+
+struct Options {
+  std::string energy, case_name, mesh, positions, projection = "clamp", gradient_file, hessian_file;
+  std::vector<std::string> set;
+  int threads = 1;
+  bool json = false;
+};
+
+std::string case_to_use(const Energy& energy, const std::string& asked) {
+  if (asked.empty() && energy.cases.size() <= 1) return energy.cases.empty() ? "" : energy.cases.front();
+  for (const std::string& name : energy.cases) {
+    if (name == asked) return name;
+  }
+  if (energy.cases.empty()) throw InputError(fmt::format("--case: {} has no cases", energy.name));
+  throw InputError(fmt::format("--case: {} has the cases {}, found '{}'{}", energy.name, fmt::join(energy.cases, ", "),
+                               asked, did_you_mean(asked, energy.cases)));
+}
+
+Mesh read_any_mesh(const std::string& path) { return path.ends_with(".msh") ? read_mesh(path) : read_surface(path); }
+
+// Of the whole symmetric matrix.
+double frobenius(const BlockMatrix& matrix) {
+  double sum = 0;
+  for (int column = 0; column < matrix.rows(); ++column) {
+    const auto first = static_cast<size_t>(matrix.column_start()[static_cast<size_t>(column)]);
+    const auto last = static_cast<size_t>(matrix.column_start()[static_cast<size_t>(column) + 1]);
+    for (size_t k = first; k < last; ++k) {
+      const int row = matrix.row_index()[k];
+      if (row >= column) sum += (row == column ? 1 : 2) * matrix.values()[k] * matrix.values()[k];
+    }
+  }
+  return std::sqrt(sum);
+}
+
+int eval(const Options& options, std::ostream& out) {
+  const Projection projection = projection_named(options.projection);
+  const Energy energy = find_energy(options.energy);
+  const std::string case_name = case_to_use(energy, options.case_name);
+  const Values values = read_assignments(energy, options.set);
+  const Mesh mesh = read_any_mesh(options.mesh);
+  const Eigen::Matrix3Xd x = options.positions.empty() ? mesh.X : read_positions(options.positions, mesh.vertices());
+  set_threads(options.threads);
+
+  const Kernel kernel = load_kernel(energy, case_name, lanes::best_lanes());
+  const bool density = energy.kind == Energy::Kind::density;
+  const std::vector<int> stencils = density ? std::vector<int>() : active_stencils(energy, kernel, mesh, values, x);
+  System system = make_system(energy, kernel, mesh, stencils, values);
+  Eigen::Matrix3Xd gradient;
+  BlockMatrix hessian;
+  const Evaluation evaluation = system.hessian(x, projection, gradient, hessian);
+  if (!(evaluation.require > 0)) {
+    throw InputError(
+        fmt::format("{}: a `require` condition of {} does not hold at these positions (smallest margin {})",
+                    options.positions.empty() ? options.mesh : options.positions, energy.name, evaluation.require));
+  }
+  if (!options.gradient_file.empty()) write_matrix_market(options.gradient_file, gradient);
+  if (!options.hessian_file.empty()) write_matrix_market(options.hessian_file, hessian);
+  Rows(out, options.json)
+      .add({{"value", evaluation.value},
+            {"gradient_norm", gradient.norm()},
+            {"hessian_frobenius", frobenius(hessian)},
+            {"elements", system.potential(0).stencil_count()},
+            {"indefinite", evaluation.indefinite}});
+  return exit_done;
+}
+
+}  // namespace
+
+void add_eval_command(CLI::App& app, Run& run) {
+  CLI::App* command = app.add_subcommand("eval", "Evaluates an energy with its derivatives on a mesh");
+  auto options = std::make_shared<Options>();
+  command->add_option("energy", options->energy, "a name in the catalogue, or an .energy file")->required();
+  command->add_option("--mesh", options->mesh, "rest state: .msh, or a surface .obj, .stl, .ply")->required();
+  command->add_option("--positions", options->positions, "text file, 'x y z' (m) per vertex; default: the rest state");
+  command->add_option("--set", options->set, "NAME=VALUE of a param, rest or lag; may be repeated")->take_all();
+  command->add_option("--case", options->case_name, "case of the energy, when it has several");
+  command->add_option("--project", options->projection, "negative eigenvalues: clamp, abs or none");
+  command->add_option("--gradient", options->gradient_file, "Matrix Market file to write");
+  command->add_option("--hessian", options->hessian_file, "Matrix Market file to write");
+  command->add_option("--threads", options->threads, "threads to use");
+  command->add_flag("--json", options->json, "one JSON object instead of a table");
+  command->callback([options, &run] { run = [options](std::ostream& out) { return eval(*options, out); }; });
+}
+
+}  // namespace ergon

@@ -1,0 +1,35 @@
+#include "tools/installation.h"
+
+#include "scenes/catalogue.h"
+
+namespace ergon {
+
+Energy find_energy(const std::string& name_or_path) {
+  std::error_code error;
+  if (name_or_path.ends_with(".energy") || std::filesystem::is_regular_file(name_or_path, error)) {
+    return read_energy(name_or_path);
+  }
+  return read_energy(Catalogue(Catalogue::default_folders()).file_of(name_or_path, "", Place{"ergon"}));
+}
+
+std::vector<std::string> catalogue_names() { return Catalogue(Catalogue::default_folders()).names(); }
+
+std::vector<std::string> cases_of(const Energy& energy) {
+  return energy.cases.empty() ? std::vector<std::string>{""} : energy.cases;
+}
+
+CompileOptions compile_options(const std::string& case_name, int lanes) {
+  CompileOptions options;
+  options.case_name = case_name;
+  options.lanes = lanes;
+  std::error_code error;
+  options.read_only_caches = {std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / "kernels"};
+  return options;
+}
+
+Kernel load_kernel(const Energy& energy, const std::string& case_name, int lanes) {
+  const CompiledKernel compiled = compile(energy, compile_options(case_name, lanes));
+  return {compiled.library, compiled.table};
+}
+
+}  // namespace ergon

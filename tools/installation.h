@@ -1,0 +1,29 @@
+#pragma once
+// What the program finds beside itself: the catalogue of energies and the kernels compiled with it.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "codegen/compile.h"
+#include "runtime/potential.h"
+#include "symbolic/energy.h"
+
+namespace ergon {
+
+// An energy by its name in the catalogue or by the path of its file. Throws SourceError, with the nearest name.
+Energy find_energy(const std::string& name_or_path);
+
+// The names of the catalogue, sorted.
+std::vector<std::string> catalogue_names();
+
+// The energy's cases, or "" alone when it has none.
+std::vector<std::string> cases_of(const Energy& energy);
+
+// Options that look for kernels beside the program first.
+CompileOptions compile_options(const std::string& case_name, int lanes);
+
+// Compiled, or from a cache.
+Kernel load_kernel(const Energy& energy, const std::string& case_name, int lanes);
+
+}  // namespace ergon
