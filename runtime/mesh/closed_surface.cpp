@@ -172,7 +172,13 @@ std::vector<SurfacePart> closed_parts(const Mesh& surface) {
       part.triangles.push_back(corners_of(surface, t));
       if (orientation[static_cast<size_t>(t)] < 0) std::swap(part.triangles.back()[1], part.triangles.back()[2]);
     }
-    if (enclosed_volume(surface.X, part.triangles) < 0) {
+    const double volume = enclosed_volume(surface.X, part.triangles);
+    const double extent = (surface.X.rowwise().maxCoeff() - surface.X.rowwise().minCoeff()).norm();
+    if (std::abs(volume) <= 1e-15 * std::pow(extent, 3)) {
+      throw InputError(fmt::format("{}: the part of the surface at {} encloses no volume", surface.source,
+                                   text_of(surface, part.triangles[0][0])));
+    }
+    if (volume < 0) {
       for (auto& t : part.triangles) std::swap(t[1], t[2]);
     }
     parts.push_back(std::move(part));
@@ -182,8 +188,10 @@ std::vector<SurfacePart> closed_parts(const Mesh& surface) {
   for (int t = 0; t < surface.cell_count(); ++t) all.push_back(corners_of(surface, t));
   const auto [first, second] = crossing_triangles(surface.X, all);
   if (first >= 0) {
-    throw InputError(fmt::format("{}: the surface cuts itself: triangles {} and {} (counted from 0) cross near {}",
-                                 surface.source, first, second, text_of(surface, all[static_cast<size_t>(first)][0])));
+    throw InputError(
+        fmt::format("{}: the surface cuts itself: triangles {} and {} (counted from 0) cross or "
+                    "overlap near {}",
+                    surface.source, first, second, text_of(surface, all[static_cast<size_t>(first)][0])));
   }
   nest(surface, parts);
   return parts;

@@ -18,7 +18,7 @@ struct SurfacePart {
 
 // Takes a Tri3 mesh apart and orients it. Throws InputError, naming one edge or pair of triangles with coordinates:
 // empty; edges with one triangle (open); edges with more than two (branching); a part with only one side (it cannot be
-// oriented); two triangles that cut one another.
+// oriented) or without volume; two triangles that cut one another.
 std::vector<SurfacePart> closed_parts(const Mesh& surface);
 
 // Volume enclosed by triangles that are counter-clockwise from outside, m^3.

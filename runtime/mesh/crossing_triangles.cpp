@@ -32,7 +32,37 @@ bool pierces(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const Corne
   return turn != 0 && side(from, to, t[1], t[2]) == turn && side(from, to, t[2], t[0]) == turn;
 }
 
+// Whether `point` is surely on the inner side of the edge from `from` to `to`, in the plane of the axes u and v; `turn`
+// is the sense of rotation of the edge's triangle there.
+bool inner(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const Eigen::Vector3d& point, int u, int v,
+           int turn) {
+  const double left = (to(u) - from(u)) * (point(v) - from(v)), right = (to(v) - from(v)) * (point(u) - from(u));
+  const double bound = 16 * std::numeric_limits<double>::epsilon() * (std::abs(left) + std::abs(right));
+  return turn * (left - right) > bound;
+}
+
+// Two triangles in one plane overlap when no edge of either separates them.
+bool overlap_in_plane(const Corners& a, const Corners& b) {
+  for (const Eigen::Vector3d& point : b) {
+    if (side(a[0], a[1], a[2], point) != 0) return false;
+  }
+  const Eigen::Vector3d normal = (a[1] - a[0]).cross(a[2] - a[0]);
+  int axis = 0;
+  normal.cwiseAbs().maxCoeff(&axis);
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  const auto separates = [&](const Corners& s, const Corners& t) {
+    const int turn = (s[1] - s[0]).cross(s[2] - s[0])(axis) > 0 ? 1 : -1;
+    for (size_t i = 0; i < 3; ++i) {
+      const auto beyond = [&](const Eigen::Vector3d& point) { return !inner(s[i], s[(i + 1) % 3], point, u, v, turn); };
+      if (std::all_of(t.begin(), t.end(), beyond)) return true;
+    }
+    return false;
+  };
+  return !separates(a, b) && !separates(b, a);
+}
+
 bool cut(const Corners& a, const Corners& b) {
+  if (overlap_in_plane(a, b)) return true;
   for (size_t i = 0; i < 3; ++i) {
     if (pierces(a[i], a[(i + 1) % 3], b) || pierces(b[i], b[(i + 1) % 3], a)) return true;
   }

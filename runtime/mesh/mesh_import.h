@@ -16,12 +16,13 @@ Mesh read_mesh(const std::string& path);
 
 // Reads a triangle surface from .obj, .stl (text or binary) or .ply (text or binary). Vertices with equal coordinates
 // are merged, triangles that lose a side by that and vertices of no triangle are left out, quadrilaterals are cut in
-// two. The surface need not be closed.
+// two; what remains keeps its order. The surface need not be closed.
 // Throws InputError with the line (or the number of the record in a binary file).
 Mesh read_surface(const std::string& path);
 
 struct FillOptions {
-  // No edge inside the solid is meant to be longer than this, m; 0: sizes are continued from the surface.
+  // The length that edges inside the solid are to stay below, m; 0: lengths are continued from the surface. A wish:
+  // the surface's edges stay as they are, and a solid few of them thick may not get finer.
   double max_edge_length = 0;
   // Tetrahedra whose quality (Gmsh's gamma: 0 flat, 1 regular) is below this are improved after filling.
   double improve_below = 0.6;

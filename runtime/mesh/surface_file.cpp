@@ -38,29 +38,36 @@ struct PointOrder {
 };
 
 Mesh merged(const SurfaceFile& surface, const std::string& path) {
-  std::map<Eigen::Vector3d, int, PointOrder> first_with;
-  std::vector<int> vertex_of(surface.points.size(), -1);
-  std::vector<Eigen::Vector3d> vertices;
+  const size_t points = surface.points.size();
+  std::map<Eigen::Vector3d, size_t, PointOrder> first_with;
+  std::vector<size_t> first(points);  // the first point with the same coordinates
+  for (size_t i = 0; i < points; ++i) first[i] = first_with.try_emplace(surface.points[i], i).first->second;
+
+  std::vector<std::array<size_t, 3>> triangles;
+  std::vector<bool> used(points, false);
+  for (const auto& [i, j, k] : surface.triangles) {
+    const size_t a = first[static_cast<size_t>(i)], b = first[static_cast<size_t>(j)],
+                 c = first[static_cast<size_t>(k)];
+    if (a == b || b == c || c == a) continue;
+    triangles.push_back({a, b, c});
+    used[a] = used[b] = used[c] = true;
+  }
+  if (triangles.empty()) throw InputError(path + ": holds no triangles");
+
   Mesh mesh;
   mesh.element = Element::tri3;
   mesh.source = path;
-  for (const auto& triangle : surface.triangles) {
-    std::array<int, 3> corners;
-    for (size_t i = 0; i < 3; ++i) {
-      const size_t point = static_cast<size_t>(triangle[i]);
-      if (vertex_of[point] < 0) {
-        const auto [place, is_new] = first_with.try_emplace(surface.points[point], static_cast<int>(vertices.size()));
-        if (is_new) vertices.push_back(surface.points[point]);
-        vertex_of[point] = place->second;
-      }
-      corners[i] = vertex_of[point];
-    }
-    if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) continue;
-    mesh.cells.insert(mesh.cells.end(), corners.begin(), corners.end());
+  mesh.X.resize(3, std::count(used.begin(), used.end(), true));
+  std::vector<int> vertex_of(points, -1);
+  int vertices = 0;
+  for (size_t i = 0; i < points; ++i) {
+    if (!used[i]) continue;
+    vertex_of[i] = vertices;
+    mesh.X.col(vertices++) = surface.points[i];
   }
-  if (mesh.cells.empty()) throw InputError(path + ": holds no triangles");
-  mesh.X.resize(3, static_cast<Eigen::Index>(vertices.size()));
-  for (size_t v = 0; v < vertices.size(); ++v) mesh.X.col(static_cast<Eigen::Index>(v)) = vertices[v];
+  for (const auto& triangle : triangles) {
+    for (const size_t point : triangle) mesh.cells.push_back(vertex_of[point]);
+  }
   return mesh;
 }
 
