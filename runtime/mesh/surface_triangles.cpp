@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "runtime/error.h"
@@ -76,12 +77,12 @@ std::vector<std::array<int, 3>> surface_triangles(const Mesh& mesh) {
   keys.reserve(cells * face_count);
   for (size_t c = 0; c < cells; ++c) {
     for (std::uint32_t f = 0; f < face_count; ++f) {
-      std::array<int, 4> corners{};
-      const auto end = corners.begin() + faces[f].corners;
+      std::array<int, 4> corners;
+      corners.fill(std::numeric_limits<int>::max());  // a triangle's missing corner sorts last
       for (size_t i = 0; i < static_cast<size_t>(faces[f].corners); ++i) {
         corners[i] = mesh.cells[c * nodes + faces[f].corner[i]];
       }
-      std::sort(corners.begin(), end);
+      std::sort(corners.begin(), corners.end());
       keys.push_back({{corners[0], corners[1], corners[2]}, static_cast<std::uint32_t>(c), f});
     }
   }
