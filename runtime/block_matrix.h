@@ -13,7 +13,7 @@ class BlockMatrix {
  public:
   BlockMatrix() = default;
   // `pairs` are the couplings (i, j) of block rows in any order, with repetitions; diagonal blocks are always present.
-  BlockMatrix(int block_rows, std::vector<std::pair<int, int>> pairs);
+  BlockMatrix(int block_rows, const std::vector<std::pair<int, int>>& pairs);
 
   int block_rows() const { return block_rows_; }
   int rows() const { return 3 * block_rows_; }

@@ -67,6 +67,8 @@ typedef struct ErgonKernel {
   void (*gradient)(const double* q, const double* e, const double* u, double* value, double* gradient);
   /* hessian: lower triangle packed by rows, entry (i, j <= i) at i*(i+1)/2 + j */
   void (*hessian)(const double* q, const double* e, const double* u, double* value, double* gradient, double* hessian);
+
+  const char* const* point_names; /* stencil: [points], the names of its dofs; 0 for a density */
 } ErgonKernel;
 
 #ifdef __cplusplus

@@ -15,7 +15,9 @@ namespace ergon {
 struct Evaluation {
   double value = 0;                  // J
   std::vector<double> by_potential;  // J, in order of addition
-  double require = 0;    // smallest margin of all `require` conditions; not positive: the state is outside the domain
+  // Smallest margin of all `require` conditions, +inf without any; not positive: the state is outside the domain. A
+  // margin or an energy that is not finite makes it -inf. Found by value() only.
+  double require = 0;
   std::string violated;  // the potential with that margin, when it is not positive
   long indefinite = 0;   // quadrature points or stencils whose Hessian was changed by projection
 };

@@ -1,0 +1,39 @@
+#include <stdexcept>
+#include <string>
+
+#include "runtime/lanes/lanes.h"
+
+namespace ergon::lanes {
+
+const LaneOperations& operations_1();
+#if defined(__x86_64__)
+const LaneOperations& operations_4();
+const LaneOperations& operations_8();
+#endif
+
+int best_lanes() {
+#if defined(__x86_64__)
+  // What -march=x86-64-v4 and -march=x86-64-v3 let the compiler use in vector code.
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd") &&
+      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl")) {
+    return 8;
+  }
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
+      __builtin_cpu_supports("bmi2")) {
+    return 4;
+  }
+#endif
+  return 1;
+}
+
+const LaneOperations& lane_operations(int lanes) {
+  if (lanes == 1) return operations_1();
+#if defined(__x86_64__)
+  if (lanes == 4 && best_lanes() >= 4) return operations_4();
+  if (lanes == 8 && best_lanes() >= 8) return operations_8();
+#endif
+  throw std::invalid_argument("kernel built for " + std::to_string(lanes) + " lanes; this machine offers at most " +
+                              std::to_string(best_lanes()));
+}
+
+}  // namespace ergon::lanes

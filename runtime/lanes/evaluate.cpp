@@ -1,0 +1,160 @@
+// The three evaluations of a range of blocks, for one vector width.
+
+#include "runtime/lanes/evaluate_hessian.h"
+
+namespace ergon::lanes {
+
+#define ERGON_JOIN(a, b) a##b
+#define ERGON_OPERATIONS(width) ERGON_JOIN(operations_, width)
+const LaneOperations& ERGON_OPERATIONS(ERGON_LANES)();
+
+namespace {
+
+constexpr double kInfinity = __builtin_inf();
+
+int lanes_of(const Stencils& s, int block) {
+  const int left = s.count - block * kWidth;
+  return left < kWidth ? left : kWidth;
+}
+
+const double* data_of(const Stencils& s, int block) {
+  return s.elements + static_cast<long>(block) * s.kernel->elements * kWidth;
+}
+
+// Sums values and finds the smallest margin over the real lanes.
+struct Tally {
+  double value = 0;
+  double require = kInfinity;
+
+  void add(Real values, int count) {
+    alignas(64) double lane[kWidth];
+    store(lane, values);
+    for (int l = 0; l < count; ++l) value += lane[l];
+  }
+  void limit(const double* margins, int count) {
+    for (int l = 0; l < count; ++l) {
+      if (!(margins[l] >= require)) require = margins[l] == margins[l] ? margins[l] : -kInfinity;
+    }
+  }
+  ChunkResult result(long indefinite) const {
+    const bool finite = __builtin_isfinite(value);
+    return {value, finite ? require : -kInfinity, indefinite};
+  }
+};
+
+template <class S>
+void value_of(const Stencils& s, BlockRange range, const double* x, ChunkResult* result) {
+  Tally tally;
+  alignas(64) double q[S::kSize * kWidth], value[kWidth], margin[kWidth];
+  Vector3 points[S::kMost];
+  for (int block = range.first; block < range.last; ++block) {
+    const int count = lanes_of(s, block);
+    gather_points<S>(s, block, x, points);
+    Real sum = splat(0);
+    for (int p = 0; p < s.quadrature; ++p) {
+      const Weights<S> w(s, block, p);
+      form_q<S>(s, w, points, q);
+      s.kernel->value(q, data_of(s, block), s.uniforms, value, margin);
+      sum += w.times_volume(load(value));
+      if (s.kernel->requires_ > 0) tally.limit(margin, count);
+    }
+    tally.add(sum, count);
+  }
+  *result = tally.result(0);
+}
+
+template <class S>
+void gradient_of(const Stencils& s, BlockRange range, const double* x, double* gradient, ChunkResult* result) {
+  Tally tally;
+  alignas(64) double q[S::kSize * kWidth], value[kWidth], by_q[S::kSize * kWidth];
+  Vector3 points[S::kMost], by_point[S::kMost];
+  const int n = S::points(s);
+  for (int block = range.first; block < range.last; ++block) {
+    const int count = lanes_of(s, block);
+    gather_points<S>(s, block, x, points);
+    for (int a = 0; a < n; ++a) by_point[a] = {};
+    Real sum = splat(0);
+    for (int p = 0; p < s.quadrature; ++p) {
+      const Weights<S> w(s, block, p);
+      form_q<S>(s, w, points, q);
+      s.kernel->gradient(q, data_of(s, block), s.uniforms, value, by_q);
+      sum += w.times_volume(load(value));
+      chain_gradient<S>(s, w, by_q, by_point);
+    }
+    tally.add(sum, count);
+    scatter_points<S>(s, block, count, by_point, gradient);
+  }
+  *result = tally.result(0);
+}
+
+// Doubles of q-Hessians that are worked on at a time: they stay in the second-level cache.
+constexpr int kBatchDoubles = 12288;
+
+template <class S>
+int batch_of(const Stencils& s) {
+  const int blocks = kBatchDoubles / (S::kPacked * kWidth * s.quadrature);
+  return blocks < 1 ? 1 : blocks;
+}
+
+template <class S>
+int scratch_of(const Stencils& s) {
+  const int n = S::points(s);
+  return batch_of<S>(s) * s.quadrature * S::kPacked * kWidth + 9 * kWidth * (n * (n + 1) / 2);
+}
+
+template <class S>
+void hessian_of(const Stencils& s, BlockRange range, const double* x, int projection, double* scratch, double* gradient,
+                double* values, ChunkResult* result) {
+  Tally tally;
+  alignas(64) double q[S::kSize * kWidth], value[kWidth], by_q[S::kSize * kWidth];
+  Vector3 points[S::kMost], by_point[S::kMost];
+  const int n = S::points(s), batch = batch_of<S>(s), size = S::kPacked * kWidth;
+  const bool project = projection != kProjectNone && !s.kernel->psd_hessian;
+  ProjectionQueue<S::kSize> queue(projection == kProjectAbsolute ? Negative::absolute : Negative::clamp);
+  double* element = scratch + static_cast<long>(batch) * s.quadrature * size;
+  for (int first = range.first; first < range.last; first += batch) {
+    const int last = first + batch < range.last ? first + batch : range.last;
+    double* packed = scratch;
+    for (int block = first; block < last; ++block) {
+      const int count = lanes_of(s, block);
+      gather_points<S>(s, block, x, points);
+      for (int a = 0; a < n; ++a) by_point[a] = {};
+      Real sum = splat(0);
+      for (int p = 0; p < s.quadrature; ++p, packed += size) {
+        const Weights<S> w(s, block, p);
+        form_q<S>(s, w, points, q);
+        s.kernel->hessian(q, data_of(s, block), s.uniforms, value, by_q, packed);
+        sum += w.times_volume(load(value));
+        chain_gradient<S>(s, w, by_q, by_point);
+        if (project) queue.add(packed, ~definite<S::kSize>(packed) & ((1u << count) - 1));
+      }
+      tally.add(sum, count);
+      if (gradient != nullptr) scatter_points<S>(s, block, count, by_point, gradient);
+    }
+    queue.flush();
+    packed = scratch;
+    for (int block = first; block < last; ++block, packed += s.quadrature * size) {
+      chain_hessian<S>(s, block, lanes_of(s, block), packed, element, values);
+    }
+  }
+  *result = tally.result(queue.changed());
+}
+
+const LaneOperations kOperations = {
+    kWidth, [](const Stencils& s) { return with_shape(s, [&]<class S>(S) { return scratch_of<S>(s); }); },
+    [](const Stencils& s, BlockRange range, const double* x, ChunkResult* result) {
+      with_shape(s, [&]<class S>(S) { value_of<S>(s, range, x, result); });
+    },
+    [](const Stencils& s, BlockRange range, const double* x, double* gradient, ChunkResult* result) {
+      with_shape(s, [&]<class S>(S) { gradient_of<S>(s, range, x, gradient, result); });
+    },
+    [](const Stencils& s, BlockRange range, const double* x, int projection, double* scratch, double* gradient,
+       double* values, ChunkResult* result) {
+      with_shape(s, [&]<class S>(S) { hessian_of<S>(s, range, x, projection, scratch, gradient, values, result); });
+    }};
+
+}  // namespace
+
+const LaneOperations& ERGON_OPERATIONS(ERGON_LANES)() { return kOperations; }
+
+}  // namespace ergon::lanes

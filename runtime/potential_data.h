@@ -1,0 +1,61 @@
+#pragma once
+// What a Potential holds: its data as it was given and in lane order. Included by potential*.cpp and system*.cpp only.
+
+#include <string>
+#include <vector>
+
+#include "runtime/aligned.h"
+#include "runtime/lanes/lanes.h"
+#include "runtime/potential.h"
+
+namespace ergon {
+
+struct Potential::Impl {
+  std::string name;
+  Kernel kernel;
+  int lanes = 1;
+  int points = 0;
+  int quadrature = 1;
+  int count = 0;
+
+  std::vector<int> stencils;       // as given
+  AlignedVector<int> vertices;     // [block][points][lanes]
+  AlignedVector<double> weights;   // lanes::Stencils::weights
+  AlignedVector<double> volumes;   // [block][quadrature][lanes]
+  AlignedVector<double> raw;       // [block][kernel->raw][lanes]
+  AlignedVector<double> elements;  // [block][kernel->elements][lanes]
+  AlignedVector<double> uniforms;
+  std::vector<double> params;
+  std::vector<char> lag_set;  // per input
+
+  bool params_changed = true;  // uniforms and elements are to be prepared
+  bool raw_changed = true;     // elements are to be prepared
+  // Counted up by every change, so that a System sees which of its copies is out of date.
+  unsigned long stencil_version = 1;
+  unsigned long lag_version = 1;
+  unsigned long param_version = 1;
+
+  int blocks() const { return (count + lanes - 1) / lanes; }
+  int padded(int stencil) const { return stencil < count ? stencil : count - 1; }
+
+  // Checks the kernel and sets what follows from it alone.
+  void bind(std::string potential_name, Kernel bound);
+  void check_params(const Parameters& values) const;  // throws when one is missing
+  void give_params(const Parameters& values);
+  // Lane-ordered vertices of stencils (sorted within each for a density).
+  void order_vertices(const std::vector<int>& given);
+  void allocate_raw();
+  // Writes one value set for all stencils or one per stencil into raw.
+  void write_raw(const ErgonInput& input, const std::vector<double>& values, const char* kind);
+  const ErgonInput& input(const std::string& wanted, int role, const char* kind) const;
+  // Fills rest data from `rest`, or from X for a rest vector named like a point.
+  void give_rest(const Eigen::Matrix3Xd& X, const std::map<std::string, std::vector<double>>& rest);
+
+  // Prepares uniforms and elements if anything changed. Throws std::logic_error for a lag that was never set.
+  void prepare();
+  lanes::Stencils view() const;
+
+  [[noreturn]] void fail(const std::string& what) const;  // InputError that starts with the potential's name
+};
+
+}  // namespace ergon

@@ -1,0 +1,217 @@
+#include "runtime/system.h"
+
+#include <fmt/format.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+#include "runtime/system_data.h"
+
+namespace ergon {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Stencil points below which starting the threads costs more than they save.
+constexpr long kWorthThreads = 8192;
+
+// Runs f(chunk) for all chunks of a term, colour by colour. Called by all threads of a team.
+template <class F>
+void over_colours(const SystemTerm& term, F f) {
+  for (size_t colour = 0; colour + 1 < term.colour_start.size(); ++colour) {
+#pragma omp for schedule(dynamic, 1)
+    for (int c = term.colour_start[colour]; c < term.colour_start[colour + 1]; ++c) {
+      f(term.chunks[static_cast<size_t>(c)]);
+    }
+  }
+}
+
+}  // namespace
+
+System::System(int vertices) : impl(std::make_shared<Impl>()) {
+  impl->vertices = vertices;
+  set_fixed(std::vector<char>(static_cast<size_t>(vertices), 0));
+  impl->x.resize(4 * static_cast<size_t>(vertices), 0.0);
+  impl->gradient.resize(4 * static_cast<size_t>(vertices), 0.0);
+  impl->seen.resize(static_cast<size_t>(vertices), 0);
+}
+
+int System::vertices() const { return impl->vertices; }
+int System::free_vertices() const { return impl->free_vertices; }
+int System::block_of(int vertex) const { return impl->block_of[static_cast<size_t>(vertex)]; }
+Potential& System::potential(int index) { return impl->terms[static_cast<size_t>(index)].potential; }
+int System::potential_count() const { return static_cast<int>(impl->terms.size()); }
+
+void System::set_fixed(const std::vector<char>& fixed) {
+  if (fixed.size() != static_cast<size_t>(impl->vertices)) {
+    throw std::invalid_argument("set_fixed: one entry per vertex is needed");
+  }
+  impl->block_of.resize(fixed.size());
+  impl->free_vertices = 0;
+  for (size_t v = 0; v < fixed.size(); ++v) impl->block_of[v] = fixed[v] != 0 ? -1 : impl->free_vertices++;
+  impl->pattern_known = false;
+  impl->base_known = false;
+}
+
+int System::add(Potential potential) {
+  impl->terms.emplace_back(std::move(potential));
+  SystemTerm& term = impl->terms.back();
+  term.operations = &lanes::lane_operations(term.data().lanes);
+  term.colour(impl->seen);
+  impl->pattern_known = false;
+  impl->base_known = false;
+  return potential_count() - 1;
+}
+
+void System::Impl::prepare() {
+  int room = 0;
+  for (SystemTerm& term : terms) {
+    term.data().prepare();
+    term.colour(seen);
+    term.stencils = term.data().view();
+    term.stencils.slots = term.slots.data();
+    term.stencils.strides = term.strides.data();
+    if (!term.kernel().zero_hessian) room = std::max(room, term.operations->scratch_size(term.stencils));
+  }
+  const auto threads = static_cast<size_t>(omp_get_max_threads());
+  if (scratch.size() < threads) scratch.resize(threads);
+  for (auto& s : scratch) {
+    if (s.size() < static_cast<size_t>(room)) s.resize(static_cast<size_t>(room));
+  }
+}
+
+bool System::Impl::worth_threads() const {
+  long work = 0;
+  for (const SystemTerm& term : terms) work += static_cast<long>(term.stencils.count) * term.stencils.points;
+  return work > kWorthThreads;
+}
+
+void System::Impl::load_positions(const Eigen::Matrix3Xd& positions) {
+  if (positions.cols() != vertices) throw std::invalid_argument("System: one position per vertex is needed");
+#pragma omp parallel for schedule(static) if (vertices > kWorthThreads)
+  for (int v = 0; v < vertices; ++v) {
+    for (int c = 0; c < 3; ++c) x[4 * static_cast<size_t>(v) + static_cast<size_t>(c)] = positions(c, v);
+  }
+}
+
+Evaluation System::Impl::sum(bool margins) const {
+  Evaluation evaluation;
+  evaluation.require = kInfinity;
+  evaluation.by_potential.reserve(terms.size());
+  for (const SystemTerm& term : terms) {
+    double value = 0, require = kInfinity;
+    for (const lanes::ChunkResult& chunk : term.results) {
+      value += chunk.value;
+      require = std::min(require, chunk.require);
+      evaluation.indefinite += chunk.indefinite;
+    }
+    evaluation.value += value;
+    evaluation.by_potential.push_back(value);
+    if (margins && require < evaluation.require) {
+      evaluation.require = require;
+      if (!(require > 0)) evaluation.violated = term.potential.name();
+    }
+  }
+  return evaluation;
+}
+
+Evaluation System::value(const Eigen::Matrix3Xd& x) {
+  Impl& d = *impl;
+  d.prepare();
+  d.load_positions(x);
+#pragma omp parallel if (d.worth_threads())
+  for (SystemTerm& term : d.terms) {
+#pragma omp for schedule(dynamic, 1) nowait
+    for (size_t chunk = 0; chunk < term.results.size(); ++chunk) {
+      const lanes::BlockRange range = term.range(static_cast<int>(chunk));
+      term.operations->value(term.stencils, range, d.x.data(), &term.results[chunk]);
+    }
+  }
+  return d.sum(true);
+}
+
+Evaluation System::gradient(const Eigen::Matrix3Xd& x, Eigen::Matrix3Xd& gradient) {
+  Impl& d = *impl;
+  d.prepare();
+  d.load_positions(x);
+  gradient.resize(3, d.vertices);
+#pragma omp parallel if (d.worth_threads())
+  {
+#pragma omp for schedule(static)
+    for (size_t i = 0; i < d.gradient.size(); ++i) d.gradient[i] = 0;
+    for (SystemTerm& term : d.terms) {
+      over_colours(term, [&](int chunk) {
+        term.operations->gradient(term.stencils, term.range(chunk), d.x.data(), d.gradient.data(),
+                                  &term.results[static_cast<size_t>(chunk)]);
+      });
+    }
+#pragma omp for schedule(static)
+    for (int v = 0; v < d.vertices; ++v) {
+      for (int c = 0; c < 3; ++c) gradient(c, v) = d.gradient[4 * static_cast<size_t>(v) + static_cast<size_t>(c)];
+    }
+  }
+  return d.sum(false);
+}
+
+Evaluation System::hessian(const Eigen::Matrix3Xd& x, Projection projection, Eigen::Matrix3Xd& gradient,
+                           BlockMatrix& matrix) {
+  Impl& d = *impl;
+  d.prepare();
+  d.load_positions(x);
+  d.update_pattern();
+  if (matrix.pattern_id() != d.pattern.pattern_id()) {
+    matrix = d.pattern;
+    matrix.values().assign(matrix.row_index().size(), 0.0);
+  }
+  d.update_base(projection, matrix);
+  gradient.resize(3, d.vertices);
+#pragma omp parallel if (d.worth_threads())
+  {
+    double* scratch = d.scratch[static_cast<size_t>(omp_get_thread_num())].data();
+#pragma omp for schedule(static) nowait
+    for (size_t i = 0; i < d.gradient.size(); ++i) d.gradient[i] = 0;
+    d.start_matrix(matrix);
+    for (SystemTerm& term : d.terms) {
+      over_colours(term, [&](int chunk) {
+        const lanes::BlockRange range = term.range(chunk);
+        lanes::ChunkResult* result = &term.results[static_cast<size_t>(chunk)];
+        if (term.assembled()) {
+          term.operations->hessian(term.stencils, range, d.x.data(), static_cast<int>(projection), scratch,
+                                   d.gradient.data(), matrix.values().data(), result);
+        } else {
+          term.operations->gradient(term.stencils, range, d.x.data(), d.gradient.data(), result);
+        }
+      });
+    }
+#pragma omp for schedule(static)
+    for (int v = 0; v < d.vertices; ++v) {
+      for (int c = 0; c < 3; ++c) gradient(c, v) = d.gradient[4 * static_cast<size_t>(v) + static_cast<size_t>(c)];
+    }
+  }
+  Evaluation evaluation = d.sum(false);
+  for (const SystemTerm& term : d.terms) {
+    if (term.constant()) evaluation.indefinite += term.indefinite;
+  }
+  return evaluation;
+}
+
+std::vector<std::string> System::skipped() const {
+  std::vector<std::string> lines;
+  for (const SystemTerm& term : impl->terms) {
+    const std::string& name = term.potential.name();
+    const ErgonKernel& kernel = term.kernel();
+    if (term.potential.stencil_count() == 0) {
+      lines.push_back(name + ": no stencils, not evaluated");
+    } else if (kernel.zero_hessian) {
+      lines.push_back(name + ": Hessian is zero, not assembled");
+    } else if (kernel.constant_hessian) {
+      lines.push_back(name + ": Hessian is constant, assembled once");
+    } else if (kernel.psd_hessian) {
+      lines.push_back(name + ": Hessian is positive semi-definite, not projected");
+    }
+  }
+  return lines;
+}
+
+}  // namespace ergon

@@ -1,0 +1,94 @@
+// The part of the matrix that stays: Hessians that do not depend on the positions are evaluated, projected and
+// assembled once. The rule for doing it again is exact: the stencils, a param, the pattern or the projection changed,
+// or a lag was set and the q-Hessians that follow from it are not bit by bit what they were.
+
+#include <algorithm>
+#include <cstring>
+
+#include "runtime/system_data.h"
+
+namespace ergon {
+
+bool SystemTerm::constant_changed() {
+  const Potential::Impl& d = data();
+  const ErgonKernel& k = kernel();
+  const auto is_lag = [](const ErgonInput& input) { return input.role == ERGON_LAG; };
+  const bool lagged = std::any_of(k.inputs, k.inputs + k.n_inputs, is_lag);
+  const bool rebuilt = based_stencils != d.stencil_version || based_params != d.param_version;
+  const bool set = based_lags != d.lag_version;
+  based_stencils = d.stencil_version;
+  based_params = d.param_version;
+  based_lags = d.lag_version;
+  if (!lagged || !(rebuilt || set)) return rebuilt;
+
+  const size_t width = static_cast<size_t>(d.lanes), rows = 3 * static_cast<size_t>(k.q_vectors);
+  const size_t packed = rows * (rows + 1) / 2 * width, elements = static_cast<size_t>(k.elements) * width;
+  q_hessians.resize(packed * static_cast<size_t>(d.blocks()));
+  const AlignedVector<double> q(rows * width, 0.0);
+  AlignedVector<double> value(width), gradient(rows * width), hessian(packed);
+  bool changed = rebuilt;
+  for (size_t block = 0; block < static_cast<size_t>(d.blocks()); ++block) {
+    k.hessian(q.data(), d.elements.data() + block * elements, d.uniforms.data(), value.data(), gradient.data(),
+              hessian.data());
+    double* kept = q_hessians.data() + block * packed;
+    if (std::memcmp(kept, hessian.data(), packed * sizeof(double)) == 0) continue;
+    std::copy(hessian.begin(), hessian.end(), kept);
+    changed = true;
+  }
+  return changed;
+}
+
+void System::Impl::update_base(Projection projection, BlockMatrix& matrix) {
+  bool changed = !base_known || projection != base_projection;
+  for (SystemTerm& term : terms) {
+    if (term.constant() && term.constant_changed()) changed = true;
+  }
+  if (!changed) return;
+  base_known = true;
+  base_projection = projection;
+  base_row.clear();
+  base_values.clear();
+  base_start.assign(static_cast<size_t>(matrix.block_rows()) + 1, 0);
+  if (std::none_of(terms.begin(), terms.end(), [](const SystemTerm& t) { return t.constant(); })) return;
+
+  matrix.set_zero();
+  for (SystemTerm& term : terms) {
+    if (!term.constant()) continue;
+    term.indefinite = 0;
+    const lanes::BlockRange all{0, term.data().blocks()};
+    lanes::ChunkResult result{};
+    term.operations->hessian(term.stencils, all, x.data(), static_cast<int>(projection), scratch[0].data(), nullptr,
+                             matrix.values().data(), &result);
+    term.indefinite = result.indefinite;
+  }
+  for (int j = 0; j < matrix.block_rows(); ++j) {
+    const int stride = matrix.column_stride(j);
+    const double* column = matrix.values().data() + matrix.column_start()[3 * static_cast<size_t>(j)];
+    for (int row = 0; row < stride; row += 3) {
+      double block[9];
+      for (int c = 0; c < 3; ++c) std::copy_n(column + c * stride + row, 3, block + 3 * c);
+      if (std::all_of(block, block + 9, [](double v) { return v == 0; })) continue;
+      base_row.push_back(row);
+      base_values.insert(base_values.end(), block, block + 9);
+    }
+    base_start[static_cast<size_t>(j) + 1] = static_cast<int>(base_row.size());
+  }
+}
+
+void System::Impl::start_matrix(BlockMatrix& matrix) const {
+  double* values = matrix.values().data();
+  const int* start = matrix.column_start().data();
+#pragma omp for schedule(static)
+  for (int j = 0; j < matrix.block_rows(); ++j) {
+    double* column = values + start[3 * j];
+    const int stride = matrix.column_stride(j);
+    std::memset(column, 0, 3 * static_cast<size_t>(stride) * sizeof(double));
+    for (int k = base_start[static_cast<size_t>(j)]; k < base_start[static_cast<size_t>(j) + 1]; ++k) {
+      const double* block = base_values.data() + 9 * static_cast<size_t>(k);
+      double* place = column + base_row[static_cast<size_t>(k)];
+      for (int c = 0; c < 3; ++c) std::copy_n(block + 3 * c, 3, place + c * stride);
+    }
+  }
+}
+
+}  // namespace ergon

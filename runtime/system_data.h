@@ -1,0 +1,90 @@
+#pragma once
+// What a System holds. Included by system*.cpp only.
+
+#include <vector>
+
+#include "runtime/aligned.h"
+#include "runtime/potential_data.h"
+#include "runtime/system.h"
+
+namespace ergon {
+
+// One potential of a system with what evaluation needs beside its own data. Its stencils are cut into chunks, and the
+// chunks coloured so that no two of a colour share a vertex: colours follow one another, the chunks of one are
+// independent.
+struct SystemTerm {
+  explicit SystemTerm(Potential added) : potential(std::move(added)) {}
+
+  Potential potential;
+  const lanes::LaneOperations* operations = nullptr;
+  lanes::Stencils stencils{};
+
+  unsigned long coloured_stencils = 0;  // stencil_version that the colouring is of
+  int chunk_blocks = 1;
+  std::vector<int> chunks;        // in order of colour
+  std::vector<int> colour_start;  // into chunks
+  std::vector<lanes::ChunkResult> results;
+
+  unsigned long slotted_stencils = 0;  // stencil_version and pattern that the slots are of
+  unsigned long slotted_pattern = 0;
+  AlignedVector<int> slots;
+  AlignedVector<int> strides;
+
+  // A constant Hessian: the versions that the assembled base is made of.
+  unsigned long based_stencils = 0;
+  unsigned long based_params = 0;
+  unsigned long based_lags = 0;
+  AlignedVector<double> q_hessians;  // kept when there is a lag that they might depend on
+  long indefinite = 0;
+
+  Potential::Impl& data() { return *potential.impl; }
+  const Potential::Impl& data() const { return *potential.impl; }
+  const ErgonKernel& kernel() const { return *potential.impl->kernel.table; }
+  bool constant() const { return kernel().constant_hessian && !kernel().zero_hessian; }
+  bool assembled() const { return !kernel().constant_hessian && !kernel().zero_hessian; }
+  lanes::BlockRange range(int chunk) const;
+
+  // Cuts and colours the stencils if they changed. `seen` is room for one mark per vertex.
+  void colour(std::vector<int>& seen);
+  // Finds the places of all blocks in the pattern; false when one is not in it.
+  bool find_slots(const BlockMatrix& pattern, const std::vector<int>& block_of);
+  // Whether the constant Hessian differs from that of the last call.
+  bool constant_changed();
+};
+
+struct System::Impl {
+  int vertices = 0;
+  int free_vertices = 0;
+  std::vector<int> block_of;
+  std::vector<SystemTerm> terms;
+
+  bool pattern_known = false;
+  BlockMatrix pattern;  // without values
+
+  // The sum of the constant Hessians: blocks that are not zero, in the order of the matrix.
+  bool base_known = false;
+  Projection base_projection = Projection::clamp;
+  std::vector<int> base_start;      // per block column
+  std::vector<int> base_row;        // of each block: scalar rows below the start of its column
+  std::vector<double> base_values;  // 9 per block, column by column
+
+  AlignedVector<double> x;                     // 4 per vertex
+  AlignedVector<double> gradient;              // 4 per vertex
+  std::vector<AlignedVector<double>> scratch;  // per thread
+  std::vector<int> seen;
+
+  // Brings prepared data, colouring and scratch up to date.
+  void prepare();
+  // Brings pattern and slots up to date.
+  void update_pattern();
+  void build_pattern();
+  // Assembles the constant Hessians again if one of them changed; uses matrix as room.
+  void update_base(Projection projection, BlockMatrix& matrix);
+  void load_positions(const Eigen::Matrix3Xd& positions);
+  // Called by all threads of a team: zeroes the matrix but for the base.
+  void start_matrix(BlockMatrix& matrix) const;
+  bool worth_threads() const;
+  Evaluation sum(bool margins) const;
+};
+
+}  // namespace ergon
