@@ -1,0 +1,58 @@
+#pragma once
+// What each time step did and cost, one JSON object per line.
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace ergon {
+
+// A part of the work that a step did not do, and why.
+struct SkippedPart {
+  std::string part;
+  std::string reason;
+};
+
+// One record. Numbers that are not finite become null.
+struct StepRecord {
+  int step = 0;
+  double time = 0;  // at the end of the step, s
+  double dt = 0;    // s
+  bool converged = false;
+  int newton_iterations = 0;
+  int linear_iterations = 0;                             // of an iterative linear solver
+  double residual = 0;                                   // in the unit of the solver's stopping rule
+  std::vector<std::pair<std::string, double>> energies;  // by term, J
+  std::vector<std::pair<std::string, double>> times;     // by part, s
+  std::vector<SkippedPart> skipped;
+  std::optional<double> smallest_gap;  // m; none without contact
+  int contacts = 0;
+};
+
+// The record as a line of JSON without its line end: {"step": .., "time": .., "dt": .., "converged": ..,
+// "newton_iterations": .., "linear_iterations": .., "residual": .., "energy": {term: J}, "seconds": {part: s},
+// "skipped": [{"part": .., "reason": ..}], "smallest_gap": .., "contacts": ..}, keys in this order.
+std::string to_json(const StepRecord& record);
+
+// A .jsonl file to which lines are added one by one. Each line is handed to the system as a whole and at once, so that
+// it can be read while the program runs; when that fails, what was written of the line is taken back. Throws
+// OutputError naming the path and the system's reason.
+class Report {
+ public:
+  // Starts the file anew, or goes on with it.
+  explicit Report(std::string path, bool go_on = false);
+  ~Report();
+  Report(const Report&) = delete;
+  Report& operator=(const Report&) = delete;
+
+  void append(const StepRecord& record) { append_line(to_json(record)); }
+  // For records of another kind; `json` must not hold a line end.
+  void append_line(const std::string& json);
+
+ private:
+  std::string path_;
+  int descriptor_ = -1;
+};
+
+}  // namespace ergon
