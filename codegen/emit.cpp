@@ -77,18 +77,23 @@ std::string kernel_table(const Module& m, const OperationCounts& c, int lanes) {
   std::string weights;
   for (double w : m.weights) weights += (weights.empty() ? "" : ", ") + literal(w);
   int inputs = 0;
-  for (const Symbol& s : m.energy->symbols) inputs += s.role != Role::dof;
+  std::string points;
+  for (const Symbol& s : m.energy->symbols) {
+    inputs += s.role != Role::dof;
+    if (s.role == Role::dof) points += (points.empty() ? "" : ", ") + quoted(s.name);
+  }
   std::string out = input_table(m);
   if (!density) out += fmt::format("static const double weights[] = {{{}}};\n", weights);
+  if (!density) out += fmt::format("static const char* const points[] = {{{}}};\n", points);
   out += fmt::format(
       "extern \"C\" __attribute__((visibility(\"default\"))) const ErgonKernel ergon_kernel = {{\n"
       "  ERGON_KERNEL_ABI, {}, {}, {}, {}, {}, {}, {}, {},\n  {}, inputs, {}, {}, {}, {}, {}, {},\n  {}, {}, {}, {},\n"
       "  {}, {}, {}, {},\n  prepare_uniforms, prepare_elements, conditions, value_entry, gradient_entry, "
-      "hessian_entry}};\n",
+      "hessian_entry, {}}};\n",
       lanes, quoted(m.energy->name), quoted(m.case_name), quoted(m.energy->geometry), density ? 1 : 0, m.points,
       m.q_vectors, density ? "0" : "weights", inputs, m.params, m.raw, c.uniforms, c.elements, m.require.size(),
       m.active.size(), int{m.constant_gradient}, int{m.constant_hessian}, int{m.zero_hessian}, int{m.psd_hessian},
-      c.value, c.gradient, c.hessian, c.divisions);
+      c.value, c.gradient, c.hessian, c.divisions, density ? "0" : "points");
   return out;
 }
 
