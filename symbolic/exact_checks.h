@@ -1,0 +1,28 @@
+#pragma once
+// The parts of check_energy, one function a check; none is returned where a check does not apply.
+
+#include <optional>
+
+#include "symbolic/checks.h"
+
+namespace ergon {
+
+// Value and derivatives are real and finite wherever the conditions hold.
+std::optional<Finding> check_defined(const Energy& energy, const std::string& case_name);
+
+// The value keeps under rotation and translation, or the energy states `frame fixed` and it does not.
+std::optional<Finding> check_rigid_motion(const Energy& energy, const std::string& case_name);
+
+// No stress in the undeformed state: F the identity, or dofs at the rest positions of their names (x0 at X0).
+std::optional<Finding> check_rest(const Energy& energy, const std::string& case_name);
+
+// A solid with parameters E and nu has the linearisation that these moduli have.
+std::optional<Finding> check_moduli(const Energy& energy, const std::string& case_name);
+
+// Small strains of the undeformed state cost energy.
+std::optional<Finding> check_stable_at_rest(const Energy& energy, const std::string& case_name);
+
+// A solid is finite for det(F) < 0, or `require` keeps it away from there.
+std::optional<Finding> check_inversion(const Energy& energy, const std::string& case_name);
+
+}  // namespace ergon

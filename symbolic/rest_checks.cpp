@@ -1,0 +1,266 @@
+// Checks of the undeformed state: rest, moduli, stable at rest.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "symbolic/eigenvalues.h"
+#include "symbolic/elaborate.h"
+#include "symbolic/exact_checks.h"
+#include "symbolic/ginac_algebra.h"
+#include "symbolic/jet.h"
+#include "symbolic/sample_states.h"
+
+namespace ergon {
+namespace {
+
+using GiNaC::ex;
+
+constexpr int digits = 50;
+constexpr double tolerance = 1e-38;
+
+bool has_moduli(const Energy& energy) {
+  const Symbol* E = energy.find("E");
+  const Symbol* nu = energy.find("nu");
+  return energy.kind == Energy::Kind::density && energy.geometry == "solid" && E && nu && E->role == Role::param &&
+         nu->role == Role::param && E->shape.scalar() && nu->shape.scalar();
+}
+
+bool has_rest_state(const Energy& energy) {
+  if (energy.kind == Energy::Kind::density) return true;
+  const auto dofs = energy.with_role(Role::dof);
+  return std::all_of(dofs.begin(), dofs.end(), [&](const Symbol* dof) { return rest_position(energy, *dof); });
+}
+
+void put_at_rest(const Energy& energy, ExactInputs& inputs) {
+  for (const Symbol* dof : energy.with_role(Role::dof))
+    inputs[dof->name] =
+        energy.kind == Energy::Kind::density ? undeformed(dof->shape) : inputs.at(rest_position(energy, *dof)->name);
+}
+
+// A random undeformed state whose `require` conditions hold (`active` is for the list of stencils to see to).
+std::optional<ExactInputs> rest_state(const Energy& energy, const std::string& case_name, StateSampler& sampler) {
+  for (int attempt = 0; attempt < 300; ++attempt) {
+    ExactInputs inputs = sampler.any(energy);
+    put_at_rest(energy, inputs);
+    ClnAlgebra numbers(inputs, digits);
+    const Elaborated<ClnNumber> result = elaborate(energy, case_name, numbers);
+    if (std::all_of(result.require.begin(), result.require.end(),
+                    [](const ClnNumber& margin) { return margin.defined && cln::plusp(margin.value); }))
+      return inputs;
+  }
+  return std::nullopt;
+}
+
+template <class B>
+Jet<typename B::Scalar> derivatives(const Energy& energy, const std::string& case_name, B numbers) {
+  JetAlgebra<B> jets(energy, numbers);
+  return elaborate(energy, case_name, jets).value;
+}
+
+// Zero as an expression, whatever the values of the symbols in it.
+bool exactly_zero(const std::vector<ex>& entries) {
+  return std::all_of(entries.begin(), entries.end(), [](const ex& e) { return e.is_zero() || e.normal().is_zero(); });
+}
+
+struct Largest {
+  double size = 0;  // not a number when an entry is not defined
+  size_t index = 0;
+};
+
+Largest largest(const std::vector<ClnNumber>& entries) {
+  Largest result;
+  for (size_t i = 0; i < entries.size(); ++i) {
+    const double size = std::fabs(to_double(entries[i]));
+    if (std::isnan(size)) return {size, i};
+    if (size > result.size) result = {size, i};
+  }
+  return result;
+}
+
+std::string component_name(const Energy& energy, size_t index) {
+  for (const Symbol* dof : energy.with_role(Role::dof)) {
+    const auto size = static_cast<size_t>(dof->shape.size());
+    if (index >= size) {
+      index -= size;
+      continue;
+    }
+    const size_t rows = static_cast<size_t>(dof->shape.rows);
+    return dof->shape.cols == 1 ? fmt::format("{}[{}]", dof->name, index)
+                                : fmt::format("{}[{},{}]", dof->name, index % rows, index / rows);
+  }
+  throw std::logic_error("a component beyond the dofs");
+}
+
+const char* where(const Energy& energy) {
+  return energy.kind == Energy::Kind::density ? "at F = I" : "at the rest positions";
+}
+
+// The gradient at rest as expressions in the parameters; for stencils at random rest positions.
+bool gradient_vanishes_exactly(const Energy& energy, const std::string& case_name, const ExactInputs& state) {
+  try {
+    ExactInputs values = state;
+    if (energy.kind == Energy::Kind::density) values = {{"F", state.at("F")}};
+    return exactly_zero(derivatives(energy, case_name, GinacAlgebra(values)).gradient);
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+// Entry (i, j) of the Hessian of mu |sym(dF)|^2 + la/2 tr(dF)^2 over the components of F.
+template <class S>
+S isotropic_entry(size_t i, size_t j, const S& la, const S& mu) {
+  const size_t a = i % 3, b = i / 3, c = j % 3, d = j / 3;
+  S entry = S(0);
+  if (a == b && c == d) entry = entry + la;
+  if (a == c && b == d) entry = entry + mu;
+  if (a == d && b == c) entry = entry + mu;
+  return entry;
+}
+
+bool moduli_match_exactly(const Energy& energy, const std::string& case_name) {
+  try {
+    GinacAlgebra numbers(ExactInputs{{"F", undeformed({3, 3})}});
+    JetAlgebra<GinacAlgebra> jets(energy, numbers);
+    const Jet<ex> jet = elaborate(energy, case_name, jets).value;
+    if (jet.hessian.empty()) return false;
+    const ex E = numbers.symbols().at("E").at(0), nu = numbers.symbols().at("nu").at(0);
+    const ex mu = E / (2 * (1 + nu)), la = E * nu / ((1 + nu) * (1 - 2 * nu));
+    for (size_t i = 0, k = 0; i < 9; ++i)
+      for (size_t j = 0; j <= i; ++j, ++k)
+        if (!(jet.hessian[k] - isotropic_entry<ex>(i, j, la, mu)).normal().is_zero()) return false;
+    return true;
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+double hessian_entry(const Jet<ClnNumber>& jet, size_t i, size_t j) {
+  if (jet.hessian.empty()) return 0;
+  return to_double(jet.hessian[std::max(i, j) * (std::max(i, j) + 1) / 2 + std::min(i, j)]);
+}
+
+// Strains of the undeformed state: for a density symmetric in the directions of its columns, for a stencil all.
+std::vector<std::vector<double>> strains(const Energy& energy) {
+  std::vector<std::vector<double>> basis;
+  if (energy.kind == Energy::Kind::density) {
+    const Shape shape = energy.symbols[0].shape;
+    for (int i = 0; i < shape.cols; ++i) {
+      for (int j = 0; j <= i; ++j) {
+        std::vector<double> strain(static_cast<size_t>(shape.size()), 0.0);
+        strain[static_cast<size_t>(i * 3 + j)] = strain[static_cast<size_t>(j * 3 + i)] = i == j ? 1 : std::sqrt(0.5);
+        basis.push_back(strain);
+      }
+    }
+    return basis;
+  }
+  const size_t n = 3 * energy.with_role(Role::dof).size();
+  for (size_t i = 0; i < n; ++i) {
+    basis.emplace_back(n, 0.0);
+    basis.back()[i] = 1;
+  }
+  return basis;
+}
+
+}  // namespace
+
+std::optional<Finding> check_rest(const Energy& energy, const std::string& case_name) {
+  if (!has_rest_state(energy)) return std::nullopt;
+  const bool density = energy.kind == Energy::Kind::density;
+  const char* stress = density ? "stress" : "force";
+  StateSampler sampler;
+  bool exact = true;
+  for (int i = 0; i < 3; ++i) {
+    const auto state = rest_state(energy, case_name, sampler);
+    if (!state)
+      return Finding{Severity::warning, "rest", fmt::format("not checked: `require` does not hold {}", where(energy))};
+    if (gradient_vanishes_exactly(energy, case_name, *state)) {
+      if (density) break;  // it holds for all parameters
+      continue;
+    }
+    exact = false;
+    const auto jet = derivatives(energy, case_name, ClnAlgebra(*state, digits));
+    const Largest found = largest(jet.gradient);
+    if (found.size <= tolerance) continue;
+    if (std::isnan(found.size))
+      return Finding{Severity::error, "rest", fmt::format("the {} is not finite {}", stress, where(energy))};
+    return Finding{density && !has_moduli(energy) ? Severity::warning : Severity::error, "rest",
+                   fmt::format("not {}-free {}: the derivative by {} is {:.4g}, expected 0", stress, where(energy),
+                               component_name(energy, found.index), to_double(jet.gradient[found.index]))};
+  }
+  return Finding{Severity::ok, "rest",
+                 fmt::format("{}-free {} ({})", stress, where(energy), exact ? "exactly" : "to 38 digits")};
+}
+
+std::optional<Finding> check_moduli(const Energy& energy, const std::string& case_name) {
+  if (!has_moduli(energy)) return std::nullopt;
+  const Finding good{Severity::ok, "moduli", "the linearisation at F = I has the moduli E and nu"};
+  if (moduli_match_exactly(energy, case_name)) {
+    Finding finding = good;
+    finding.message += " (exactly)";
+    return finding;
+  }
+  StateSampler sampler;
+  auto state = rest_state(energy, case_name, sampler);
+  if (!state) return Finding{Severity::warning, "moduli", "not checked: `require` does not hold at F = I"};
+  state->at("E") = {Rational(1)};
+  state->at("nu") = {Rational(1) / 4};
+  const auto jet = derivatives(energy, case_name, ClnAlgebra(*state, digits));
+  for (size_t i = 0; i < 9; ++i) {
+    for (size_t j = 0; j <= i; ++j) {
+      const double found = hessian_entry(jet, i, j);
+      const double expected = isotropic_entry<double>(i, j, 0.4, 0.4);
+      if (std::fabs(found - expected) < 1e-12) continue;
+      return Finding{
+          Severity::error, "moduli",
+          fmt::format("with E = 1 Pa and nu = 0.25 the second derivative by {} and {} at F = I is {:.4g} Pa, "
+                      "expected {:.4g} Pa",
+                      component_name(energy, j), component_name(energy, i), found, expected)};
+    }
+  }
+  return good;
+}
+
+std::optional<Finding> check_stable_at_rest(const Energy& energy, const std::string& case_name) {
+  if (!has_rest_state(energy)) return std::nullopt;
+  const auto basis = strains(energy);
+  const int n = static_cast<int>(basis.size());
+  StateSampler sampler;
+  double weakest = 1;  // smallest eigenvalue over the largest
+  for (int sample = 0; sample < 8; ++sample) {
+    const auto state = rest_state(energy, case_name, sampler);
+    if (!state) return std::nullopt;  // check_rest tells
+    const auto jet = derivatives(energy, case_name, ClnAlgebra(*state, digits));
+    std::vector<double> matrix;
+    for (const auto& a : basis) {
+      for (const auto& b : basis) {
+        double entry = 0;
+        for (size_t i = 0; i < a.size(); ++i)
+          for (size_t j = 0; j < b.size(); ++j)
+            if (a[i] != 0 && b[j] != 0) entry += a[i] * hessian_entry(jet, i, j) * b[j];
+        matrix.push_back(entry);
+      }
+    }
+    const auto eigenvalues = symmetric_eigenvalues(matrix, n);
+    if (std::isnan(eigenvalues.front()))
+      return Finding{Severity::error, "stable at rest", fmt::format("the stiffness is not finite {}", where(energy))};
+    const double scale = std::max(std::fabs(eigenvalues.front()), std::fabs(eigenvalues.back()));
+    weakest = std::min(weakest, scale > 0 ? eigenvalues.front() / scale : 0);
+  }
+  const bool density = energy.kind == Energy::Kind::density;
+  const char* motion = density ? "strain" : "displacement";
+  if (weakest < -1e-12)
+    return Finding{Severity::error, "stable at rest",
+                   fmt::format("a small {} {} gives energy away: the smallest eigenvalue of the stiffness is {:.2g} of "
+                               "the largest",
+                               motion, where(energy), weakest)};
+  if (density && weakest < 1e-12)
+    return Finding{Severity::warning, "stable at rest",
+                   fmt::format("some small strain {} costs nothing", where(energy))};
+  const char* costs = density ? "every small strain costs energy " : "no small displacement gives energy away ";
+  return Finding{Severity::ok, "stable at rest", std::string(costs) + where(energy)};
+}
+
+}  // namespace ergon
