@@ -96,7 +96,9 @@ void GroundContact::check_start(const Eigen::Matrix3Xd& x) const {
       if (d < least) least = d, deepest = v;
     }
     if (below == 0) continue;
-    const std::string others = below > 1 ? fmt::format(" and {} other vertices are not above it", below - 1) : "";
+    const std::string others =
+        below == 1 ? ""
+                   : fmt::format(" and {} other {} not above it", below - 1, below == 2 ? "vertex is" : "vertices are");
     const Eigen::Vector3d n = side.ground.normal;
     const std::string along = fmt::format("along ({:.3g}, {:.3g}, {:.3g})", n[0], n[1], n[2]);
     if (least == 0) {

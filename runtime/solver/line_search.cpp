@@ -13,6 +13,15 @@ namespace {
 // A trial whose slope has fallen to this part of the first one has come near the minimum along the line.
 constexpr double approximate_wolfe = 0.8;
 
+// Changes of energy below this part of the energy's terms are worth a measurement of rounding.
+constexpr double suspicious_change = 1e-8;
+
+double magnitude_of(const Evaluation& evaluation) {
+  double sum = 0;
+  for (double value : evaluation.by_potential) sum += std::abs(value);
+  return sum;
+}
+
 double free_dot(const System& system, const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
   double sum = 0;
   for (int v = 0; v < system.vertices(); ++v) {
@@ -23,15 +32,8 @@ double free_dot(const System& system, const Eigen::Matrix3Xd& a, const Eigen::Ma
 
 }  // namespace
 
-std::string unusable(System& system, const Evaluation& evaluation) {
-  if (evaluation.require <= 0) return "the domain of " + evaluation.violated;
-  if (std::isfinite(evaluation.value)) return "";
-  for (size_t i = 0; i < evaluation.by_potential.size(); ++i) {
-    if (!std::isfinite(evaluation.by_potential[i])) {
-      return "a finite energy of " + system.potential(static_cast<int>(i)).name();
-    }
-  }
-  return "a finite energy";
+std::string unusable(const Evaluation& evaluation) {
+  return evaluation.require > 0 ? "" : "the domain of " + evaluation.violated;
 }
 
 Rounding measure_rounding(System& system, const Eigen::Matrix3Xd& x, const Evaluation& at_x,
@@ -46,12 +48,11 @@ Rounding measure_rounding(System& system, const Eigen::Matrix3Xd& x, const Evalu
     }
   }
   Eigen::Matrix3Xd moved_gradient(3, x.cols());
-  const Evaluation at_moved = system.gradient(moved, moved_gradient);
-  double magnitude = 0;
-  for (double value : at_x.by_potential) magnitude += std::abs(value);
+  const double moved_value = system.value(moved).value;
+  system.gradient(moved, moved_gradient);
   Rounding rounding;
-  rounding.energy = 8 * std::abs(at_moved.value - at_x.value - free_dot(system, gradient, moved - x)) +
-                    8 * std::numeric_limits<double>::epsilon() * magnitude;
+  rounding.energy = 8 * std::abs(moved_value - at_x.value - free_dot(system, gradient, moved - x)) +
+                    8 * std::numeric_limits<double>::epsilon() * magnitude_of(at_x);
   for (int v = 0; v < system.vertices(); ++v) {
     if (system.block_of(v) < 0) continue;
     rounding.gradient = std::max(rounding.gradient, (moved_gradient.col(v) - gradient.col(v)).cwiseAbs().maxCoeff());
@@ -66,15 +67,16 @@ void line_search(System& system, Contact* contact, const LineSearchInput& input,
   result.halvings = 0;
   bool measured = false;
   Rounding rounding;
+  Eigen::Matrix3Xd gradient;
   while (true) {
     result.x = input.x + result.fraction * input.direction;
     if (contact) {
       const Stopwatch watch(contact_seconds);
       contact->set_active(result.x);
     }
-    result.evaluation = system.gradient(result.x, result.gradient);
+    result.evaluation = system.value(result.x);
     const double predicted = result.fraction * input.slope;
-    result.rejected_by = unusable(system, result.evaluation);
+    result.rejected_by = unusable(result.evaluation);
     if (result.rejected_by.empty()) {
       result.rejected_by = "the energy, which does not fall";
       const double change = result.evaluation.value - input.at_x.value;
@@ -82,17 +84,20 @@ void line_search(System& system, Contact* contact, const LineSearchInput& input,
         result.found = true;
         return;
       }
-      if (input.near_limit) {
+      if (input.near_limit || std::abs(change) <= suspicious_change * magnitude_of(input.at_x)) {
         if (!measured) {
           if (contact) contact->set_active(input.x);
           rounding = measure_rounding(system, input.x, input.at_x, input.gradient);
           if (contact) contact->set_active(result.x);
           measured = true;
         }
-        const double slope = free_dot(system, result.gradient, input.direction);
-        if (change <= rounding.energy && std::abs(slope) <= approximate_wolfe * std::abs(input.slope)) {
-          result.found = true;
-          return;
+        if (change <= rounding.energy) {
+          system.gradient(result.x, gradient);
+          const double slope = free_dot(system, gradient, input.direction);
+          if (std::abs(slope) <= approximate_wolfe * std::abs(input.slope)) {
+            result.found = true;
+            return;
+          }
         }
       }
     }

@@ -29,7 +29,7 @@ struct LineSearchInput {
   double first_fraction = 1;  // tried first
   double sufficient_decrease = 1e-4;
   int max_halvings = 60;
-  bool near_limit = false;  // the direction is so short that rounding may hide the decrease: worth measuring it
+  bool near_limit = false;  // the direction is so short that rounding may hide the decrease
 };
 
 struct LineSearchResult {
@@ -38,16 +38,15 @@ struct LineSearchResult {
   double fraction = 0;
   int halvings = 0;
   std::string rejected_by;  // why the last trial was rejected
-  Eigen::Matrix3Xd x;       // the accepted state, its energy and gradient
+  Eigen::Matrix3Xd x;       // the accepted state and its energy
   Evaluation evaluation;
-  Eigen::Matrix3Xd gradient;
 };
 
 // `result` is passed in so that its arrays are reused. `contact_seconds` takes the time of active sets.
 void line_search(System& system, Contact* contact, const LineSearchInput& input, LineSearchResult& result,
                  double& contact_seconds);
 
-// The potential that makes an evaluation unusable (outside its domain or not finite); empty when it is usable.
-std::string unusable(System& system, const Evaluation& evaluation);
+// What a state is outside of, by its System::value; empty when it is inside the domain of every potential.
+std::string unusable(const Evaluation& evaluation);
 
 }  // namespace ergon

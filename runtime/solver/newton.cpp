@@ -11,7 +11,8 @@ namespace ergon {
 namespace {
 
 constexpr double largest_gap_change = 0.1;  // of the last Newton step, as a fraction of each active gap
-constexpr double near_limit = 1e3;          // tolerances: below this step rounding may hide the decrease of energy
+constexpr double model_error = 0.05;        // of the change of energy that a Newton step predicts
+constexpr double near_limit = 1e3;          // tolerances: a step below this may be the last but one
 constexpr double rounding_gradients = 4;    // a gradient of so many times its rounding counts as zero
 constexpr double first_shift = 1e-8;        // of the mean diagonal
 constexpr double shift_growth = 10;
@@ -60,15 +61,14 @@ NewtonResult Newton::minimise(System& system, Eigen::Matrix3Xd& x, const NewtonO
   NewtonSeconds& seconds = result.seconds;
   LineSearchResult trial;
 
-  evaluate_gradient(system, x, contact, result);
-  if (const std::string outside = unusable(system, result.evaluation); !outside.empty()) {
+  evaluate_value(system, x, contact, result);
+  if (const std::string outside = unusable(result.evaluation); !outside.empty()) {
     result.reason = "the state at the start is outside " + outside;
     return result;
   }
+  if (certainly_converged(system, x, options, result)) return result;
 
   while (true) {
-    result.residual = largest_free_component(system, gradient_).value;
-    if (certainly_converged(system, options, result)) break;
     if (result.iterations == options.max_iterations) {
       const Largest worst = largest_free_component(system, direction_);
       result.reason = fmt::format(
@@ -82,6 +82,7 @@ NewtonResult Newton::minimise(System& system, Eigen::Matrix3Xd& x, const NewtonO
       result.evaluation = system.hessian(x, options.projection, gradient_, matrix_);
       result.indefinite += result.evaluation.indefinite;
     }
+    result.residual = largest_free_component(system, gradient_).value;
     const double slope = find_direction(system, result);
     if (!result.reason.empty()) return result;
     result.step_speed = largest_free_component(system, direction_).value / options.dt;
@@ -94,6 +95,7 @@ NewtonResult Newton::minimise(System& system, Eigen::Matrix3Xd& x, const NewtonO
       fraction = contact->largest_step(x, direction_);
       gaps_settled = contact->gap_change(x, direction_) <= largest_gap_change;
     }
+    const bool is_near = result.step_speed <= near_limit * options.tolerance;
     const bool is_last = result.step_speed <= options.tolerance && gaps_settled;
 
     const LineSearchInput input{.x = x,
@@ -104,7 +106,7 @@ NewtonResult Newton::minimise(System& system, Eigen::Matrix3Xd& x, const NewtonO
                                 .first_fraction = fraction,
                                 .sufficient_decrease = options.sufficient_decrease,
                                 .max_halvings = options.max_halvings,
-                                .near_limit = result.step_speed <= near_limit * options.tolerance};
+                                .near_limit = is_near};
     {
       const double contact_before = seconds.contact;
       {
@@ -121,31 +123,42 @@ NewtonResult Newton::minimise(System& system, Eigen::Matrix3Xd& x, const NewtonO
 
     result.smallest_fraction = std::min(result.smallest_fraction, trial.fraction);
     ++result.iterations;
+    const double change = trial.evaluation.value - result.evaluation.value;
+    const bool is_quadratic = trial.fraction == 1 && std::abs(change - slope / 2) <= model_error * std::abs(slope);
     x.swap(trial.x);
-    gradient_.swap(trial.gradient);
     result.evaluation = trial.evaluation;
     if (contact && contact->adapt(x)) {
-      evaluate_gradient(system, x, contact, result);
+      evaluate_value(system, x, contact, result);
     } else if (is_last) {
-      result.residual = largest_free_component(system, gradient_).value;
+      evaluate_gradient(system, x, result);
       result.converged = true;
-      break;
+      return result;
+    } else if ((is_near || is_quadratic) && certainly_converged(system, x, options, result)) {
+      return result;
     }
   }
-  return result;
 }
 
-void Newton::evaluate_gradient(System& system, const Eigen::Matrix3Xd& x, Contact* contact, NewtonResult& result) {
+void Newton::evaluate_value(System& system, const Eigen::Matrix3Xd& x, Contact* contact, NewtonResult& result) {
   if (contact) {
     const Stopwatch watch(result.seconds.contact);
     contact->set_active(x);
   }
   const Stopwatch watch(result.seconds.evaluate);
-  result.evaluation = system.gradient(x, gradient_);
+  result.evaluation = system.value(x);
 }
 
-bool Newton::certainly_converged(const System& system, const NewtonOptions& options, NewtonResult& result) const {
+void Newton::evaluate_gradient(System& system, const Eigen::Matrix3Xd& x, NewtonResult& result) {
+  const Stopwatch watch(result.seconds.evaluate);
+  system.gradient(x, gradient_);
+  result.residual = largest_free_component(system, gradient_).value;
+}
+
+// The gradient alone may show that the next step is below the tolerance.
+bool Newton::certainly_converged(System& system, const Eigen::Matrix3Xd& x, const NewtonOptions& options,
+                                 NewtonResult& result) {
   if (options.curvature.size() == 0 || options.projection == Projection::none) return false;
+  evaluate_gradient(system, x, result);
   const double bound = step_bound(system, gradient_, options.curvature) / options.dt;
   if (!(bound <= options.tolerance)) return false;
   result.step_speed = bound;

@@ -34,7 +34,7 @@ struct NewtonSeconds {
   double evaluate = 0;  // energies, derivatives and assembly
   double factor = 0;    // analysis included
   double solve = 0;
-  double line_search = 0;  // energies and gradients of trial states
+  double line_search = 0;  // energies of trial states
   double contact = 0;      // active sets and step bounds
 };
 
@@ -67,8 +67,10 @@ class Newton {
   const BlockMatrix& matrix() const { return matrix_; }
 
  private:
-  void evaluate_gradient(System& system, const Eigen::Matrix3Xd& x, Contact* contact, NewtonResult& result);
-  bool certainly_converged(const System& system, const NewtonOptions& options, NewtonResult& result) const;
+  void evaluate_value(System& system, const Eigen::Matrix3Xd& x, Contact* contact, NewtonResult& result);
+  void evaluate_gradient(System& system, const Eigen::Matrix3Xd& x, NewtonResult& result);
+  bool certainly_converged(System& system, const Eigen::Matrix3Xd& x, const NewtonOptions& options,
+                           NewtonResult& result);
   double find_direction(System& system, NewtonResult& result);
   void give_up_line_search(System& system, const Eigen::Matrix3Xd& x, Contact* contact, const LineSearchResult& trial,
                            bool is_last, NewtonResult& result);

@@ -30,10 +30,10 @@ std::vector<double> gather(const Potential& potential, int point, const Eigen::M
   return values;
 }
 
-void set_vector_lags(Potential& potential, const std::string& name, const Eigen::Matrix3Xd& field) {
-  const int points = potential.points_per_stencil();
-  for (int point = 0; point < points; ++point) {
-    const std::string lag = points == 1 ? name : name + std::to_string(point);
+// The lag of each point whose name is the point's with this ending.
+void set_vector_lags(Potential& potential, const std::string& ending, const Eigen::Matrix3Xd& field) {
+  for (int point = 0; point < potential.points_per_stencil(); ++point) {
+    const std::string lag = potential.kernel().point_names[point] + ending;
     if (has_lag(potential.kernel(), lag)) potential.set_lag(lag, gather(potential, point, field));
   }
 }
@@ -102,9 +102,9 @@ void TimeStepper::set_lags(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& xh
     double& lagged_dt = lagged_dt_[static_cast<size_t>(i)];
     if (lagged_dt != options_.dt && has_lag(potential.kernel(), "dt")) potential.set_lag("dt", {options_.dt});
     lagged_dt = options_.dt;
-    if (potential.kernel().density) continue;
-    set_vector_lags(potential, "xhat", xhat);
-    set_vector_lags(potential, "xlag", x);
+    if (potential.kernel().density || !potential.kernel().point_names) continue;
+    set_vector_lags(potential, "hat", xhat);
+    set_vector_lags(potential, "lag", x);
   }
 }
 
@@ -137,9 +137,7 @@ NewtonResult TimeStepper::solve(const Eigen::Matrix3Xd& start, Eigen::Matrix3Xd&
     if (!friction || !result.converged) break;
 
     const Stopwatch watch(record.seconds.contact);
-    if (record.friction_iterations == 1 || record.friction_iterations < options_.friction_lag_iterations) {
-      record.friction_change = ground_->lag_friction(x, start, options_.dt);
-    }
+    record.friction_change = ground_->lag_friction(x, start, options_.dt);
     if (record.friction_change <= options_.friction_tolerance) break;
     if (record.friction_iterations >= options_.friction_lag_iterations) break;
   }

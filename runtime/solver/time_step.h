@@ -4,9 +4,9 @@
 // as it was and says why. Source: Gast et al. 2015, Optimization Integrator for Large Time Steps, TVCG 21(10); Li et
 // al. 2020, Incremental Potential Contact, TOG 39(4).
 //
-// Lags are set by name in every potential that has them: `dt` (s); `xhat` = x + dt*v and `xlag` = x at the start of the
-// step, both for one-point stencils, with the point's number appended (xlag0, xlag1) for others. A potential with the
-// lag dt is a term of the incremental potential and not stored energy.
+// Lags are set by name in every potential that has them: `dt` (s) and, for each point of a stencil, its dof's name with
+// `hat` (xhat = x + dt*v) or `lag` (xlag = x at the start of the step) added. A potential with the lag dt is a term of
+// the incremental potential and not stored energy.
 
 #include <Eigen/Core>
 #include <limits>
