@@ -1,7 +1,7 @@
 #pragma once
 // Contact of vertices with half-spaces dot(n, x) < height: the active sets of the barrier and of lagged friction, the
 // largest step that does not reach the plane, and the barrier's stiffness.
-// Source: Li et al. 2020, Incremental Potential Contact, TOG 39(4): barrier Eq. 6, friction Sec. 5.
+// Source: Li et al. 2020, Incremental Potential Contact, TOG 39(4): the barrier and lagged, smoothed friction.
 
 #include <Eigen/Core>
 #include <limits>

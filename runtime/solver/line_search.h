@@ -1,8 +1,8 @@
 #pragma once
 // Back-tracking along a Newton step. It establishes that an accepted state is inside the domain of every potential and
 // has a lower energy, or, where rounding hides the change of energy, a slope that shows the decrease.
-// Source: Nocedal, Wright 2006, Numerical Optimization, Algorithm 3.1; Hager, Zhang 2005, SIAM J. Optim. 16(1), Eq. 4.1
-// (approximate Wolfe condition).
+// Source: Nocedal, Wright 2006, Numerical Optimization, backtracking; Hager, Zhang 2005, SIAM J. Optim. 16(1):
+// approximate Wolfe condition.
 
 #include <Eigen/Core>
 #include <string>

@@ -2,7 +2,7 @@
 // Projected Newton with a back-tracking line search: minimises the energy of a System over its free vertices. It
 // establishes that the energy never rises from iterate to iterate, that no iterate leaves the domain of any potential,
 // and that none passes through a contact.
-// Source: Li et al. 2020, Incremental Potential Contact, TOG 39(4), Algorithm 1.
+// Source: Li et al. 2020, Incremental Potential Contact, TOG 39(4), barrier-aware projected Newton.
 
 #include <Eigen/Core>
 #include <string>
