@@ -15,14 +15,15 @@
 namespace ergon {
 
 struct CompileOptions {
-  std::string case_name;                                // one of the energy's cases; "" when it has none
-  int lanes = 1;                                        // 1, 4 or 8
-  std::vector<std::filesystem::path> read_only_caches;  // searched first, e.g. the catalogue compiled with the program
-  std::filesystem::path cache;                          // "" means KernelCache::user_folder()
-  bool use_cached = true;                               // false: build even if a sound kernel is there
-  std::string compiler;                                 // "" means default_compiler()
+  std::string case_name{};  // one of the energy's cases; "" when it has none
+  int lanes = 1;            // 1, 4 or 8
+  std::vector<std::filesystem::path>
+      read_only_caches{};         // searched first, e.g. the catalogue compiled with the program
+  std::filesystem::path cache{};  // "" means KernelCache::user_folder()
+  bool use_cached = true;         // false: build even if a sound kernel is there
+  std::string compiler{};         // "" means default_compiler()
   // Called after each pass with its name and the graph as text, when set.
-  std::function<void(const std::string& pass, const std::string& text)> dump;
+  std::function<void(const std::string& pass, const std::string& text)> dump{};
 };
 
 // Seconds spent in each part.

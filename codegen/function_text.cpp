@@ -1,5 +1,6 @@
 #include "codegen/function_text.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -38,6 +39,7 @@ class Writer {
       if (is_operation(p_[i])) result_.instructions.push_back(i);
     }
     for (int r : roots) uses_[r]++;
+    for (int i : inputs_in_order(needed(p_, roots, given))) form(i);
     for (const Output& o : outputs) {
       for (int i : needed(p_, {o.value}, given)) form(i);
       Text t = texts_.at(o.value);
@@ -48,6 +50,16 @@ class Writer {
   }
 
  private:
+  std::vector<int> inputs_in_order(const std::vector<int>& code) const {
+    std::vector<int> inputs;
+    for (int i : code)
+      if (p_[i].op == Opcode::input && !from_slot(i)) inputs.push_back(i);
+    std::sort(inputs.begin(), inputs.end(), [&](int a, int b) {
+      return std::pair(p_[a].source, p_[a].index) < std::pair(p_[b].source, p_[b].index);
+    });
+    return inputs;
+  }
+
   bool from_slot(int i) const {
     return (read_uniforms_ && slots_.uniform[static_cast<size_t>(i)] >= 0) ||
            (read_elements_ && slots_.element[static_cast<size_t>(i)] >= 0);
