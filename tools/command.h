@@ -16,6 +16,7 @@ enum ExitCode { exit_done = 0, exit_failed = 1, exit_bad_input = 2 };
 using Run = std::function<int(std::ostream& out)>;
 
 void add_check_command(CLI::App& app, Run& run);
+void add_show_command(CLI::App& app, Run& run);
 void add_eval_command(CLI::App& app, Run& run);
 void add_bench_command(CLI::App& app, Run& run);
 void add_compile_command(CLI::App& app, Run& run);

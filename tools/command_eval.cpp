@@ -28,14 +28,10 @@ struct Options {
   bool json = false;
 };
 
-std::string case_to_use(const Energy& energy, const std::string& asked) {
-  if (asked.empty() && energy.cases.size() <= 1) return energy.cases.empty() ? "" : energy.cases.front();
-  for (const std::string& name : energy.cases) {
-    if (name == asked) return name;
-  }
-  if (energy.cases.empty()) throw InputError(fmt::format("--case: {} has no cases", energy.name));
-  throw InputError(fmt::format("--case: {} has the cases {}, found '{}'{}", energy.name, fmt::join(energy.cases, ", "),
-                               asked, did_you_mean(asked, energy.cases)));
+std::string only_case(const Energy& energy, const std::string& asked) {
+  const std::vector<std::string> cases = cases_of(energy, asked);
+  if (cases.size() == 1) return cases.front();
+  throw InputError(fmt::format("{} has the cases {}; choose one with --case", energy.name, fmt::join(cases, ", ")));
 }
 
 Mesh read_any_mesh(const std::string& path) { return path.ends_with(".msh") ? read_mesh(path) : read_surface(path); }
@@ -57,7 +53,7 @@ double frobenius(const BlockMatrix& matrix) {
 int eval(const Options& options, std::ostream& out) {
   const Projection projection = projection_named(options.projection);
   const Energy energy = find_energy(options.energy);
-  const std::string case_name = case_to_use(energy, options.case_name);
+  const std::string case_name = only_case(energy, options.case_name);
   const Values values = read_assignments(energy, options.set);
   const Mesh mesh = read_any_mesh(options.mesh);
   const Eigen::Matrix3Xd x = options.positions.empty() ? mesh.X : read_positions(options.positions, mesh.vertices());

@@ -1,6 +1,10 @@
 #include "tools/installation.h"
 
+#include <fmt/format.h>
+
+#include "runtime/error.h"
 #include "scenes/catalogue.h"
+#include "tools/choices.h"
 
 namespace ergon {
 
@@ -14,8 +18,10 @@ Energy find_energy(const std::string& name_or_path) {
 
 std::vector<std::string> catalogue_names() { return Catalogue(Catalogue::default_folders()).names(); }
 
-std::vector<std::string> cases_of(const Energy& energy) {
-  return energy.cases.empty() ? std::vector<std::string>{""} : energy.cases;
+std::vector<std::string> cases_of(const Energy& energy, const std::string& asked) {
+  if (asked.empty()) return energy.cases.empty() ? std::vector<std::string>{""} : energy.cases;
+  if (energy.cases.empty()) throw InputError(fmt::format("--case: {} has no cases", energy.name));
+  return {energy.cases[chosen("--case", asked, energy.cases)]};
 }
 
 CompileOptions compile_options(const std::string& case_name, int lanes) {

@@ -17,8 +17,9 @@ Energy find_energy(const std::string& name_or_path);
 // The names of the catalogue, sorted.
 std::vector<std::string> catalogue_names();
 
-// The energy's cases, or "" alone when it has none.
-std::vector<std::string> cases_of(const Energy& energy);
+// The energy's cases, or "" alone when it has none; only the one `asked` for, unless that is "". Throws InputError when
+// there is no such case.
+std::vector<std::string> cases_of(const Energy& energy, const std::string& asked = "");
 
 // Options that look for kernels beside the program first.
 CompileOptions compile_options(const std::string& case_name, int lanes);

@@ -9,8 +9,8 @@
 
 namespace ergon {
 
-// "array real general", 3n x 1: the components of the n columns one after the other. Throws InputError when the file
-// cannot be written; then nothing is left at `path`.
+// "array real general", 3n x 1: the components of the n columns one after the other. Throws OutputError when the file
+// cannot be written; then nothing is left behind.
 void write_matrix_market(const std::string& path, const Eigen::Matrix3Xd& vectors);
 
 // "coordinate real symmetric", 3n x 3n, the lower triangle; entries of the pattern that are zero are written too.

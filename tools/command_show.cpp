@@ -1,0 +1,77 @@
+// ergon show ENERGY: an energy told back, and what it costs.
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <ostream>
+
+#include "runtime/lanes/lanes.h"
+#include "symbolic/analyse.h"
+#include "symbolic/print.h"
+#include "tools/command.h"
+#include "tools/installation.h"
+
+namespace ergon {
+namespace {
+
+struct Options {
+  std::string energy, case_name;
+  bool latex = false, source = false;
+};
+
+// What the structure pass found.
+std::string structure_of(const Module& module) {
+  if (module.zero_hessian) return "Hessian is zero";
+  std::string text = module.constant_hessian ? "Hessian is constant" : "Hessian depends on the state";
+  if (module.psd_hessian) text += ", positive semi-definite by construction";
+  return text;
+}
+
+void show_cost(const Energy& energy, const std::string& case_name, std::ostream& out) {
+  const Generated kernel = generate(energy, compile_options(case_name, lanes::best_lanes()));
+  const OperationCounts& n = kernel.counts;
+  out << fmt::format(
+      "cost{}, operations per {}: value {}, with gradient {}, with Hessian {} ({} divisions, {} square roots, {} other "
+      "functions)\n"
+      "  {} values once per material, {} per element; {} of {} components is differentiated; {}\n",
+      case_name.empty() ? "" : " of case " + case_name,
+      energy.kind == Energy::Kind::density ? "point of quadrature" : "stencil", n.value, n.gradient, n.hessian,
+      n.divisions, n.roots, n.calls, n.uniforms, n.elements,
+      energy.kind == Energy::Kind::density ? "F" : "a vector of differences", kernel.module.q_size(),
+      structure_of(kernel.module));
+}
+
+int show(const Options& options, std::ostream& out) {
+  const Energy energy = find_energy(options.energy);
+  const std::vector<std::string> cases = cases_of(energy, options.case_name);
+  if (options.source) {
+    for (const std::string& name : cases) out << generate(energy, compile_options(name, lanes::best_lanes())).source;
+    return exit_done;
+  }
+  if (options.latex) {
+    out << formula_latex(energy);
+    return exit_done;
+  }
+  const bool density = energy.kind == Energy::Kind::density;
+  out << fmt::format("{}: {} of a {}, in {}\n", energy.name, density ? "density" : "energy", energy.geometry,
+                     to_string(value_unit(energy)));
+  if (!energy.summary.empty()) out << energy.summary << '\n';
+  if (!energy.cite.empty()) out << energy.cite << '\n';
+  out << '\n' << symbol_table(energy) << '\n' << formula_text(energy) << '\n';
+  for (const std::string& name : cases) show_cost(energy, name, out);
+  return exit_done;
+}
+
+}  // namespace
+
+void add_show_command(CLI::App& app, Run& run) {
+  CLI::App* command = app.add_subcommand("show", "Prints an energy's formula, symbols, units and cost");
+  auto options = std::make_shared<Options>();
+  command->add_option("energy", options->energy, "an .energy file, or a name in the catalogue")->required();
+  command->add_option("--case", options->case_name, "this case only");
+  command->add_flag("--latex", options->latex, "the formula in LaTeX");
+  command->add_flag("--source", options->source, "the C++ that is emitted for it");
+  command->callback([options, &run] { run = [options](std::ostream& out) { return show(*options, out); }; });
+}
+
+}  // namespace ergon
