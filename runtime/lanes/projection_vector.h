@@ -33,13 +33,21 @@ inline Mask from_bits(unsigned lanes) { return lanes & 1; }
 inline Real abs(Real a) { return __builtin_fabs(a); }
 inline Real sqrt(Real a) { return __builtin_sqrt(a); }
 inline Real rsqrt(Real a) { return 1 / __builtin_sqrt(a); }
+inline Real copysign(Real a, Real b) { return __builtin_copysign(a, b); }
+inline Real half_sign_product(Real a, Real b) { return __builtin_copysign(0.5, a * b); }
 
 #else
 
 typedef double Real __attribute__((vector_size(8 * ERGON_LANES)));
 typedef long long Integer __attribute__((vector_size(8 * ERGON_LANES)));
 inline Real splat(double a) { return a - Real{}; }
-inline Real abs(Real a) { return (Real)((Integer)a & (Integer{} + 0x7fffffffffffffffLL)); }
+constexpr Integer kMagnitude = Integer{} + 0x7fffffffffffffffLL;
+inline Real abs(Real a) { return (Real)((Integer)a & kMagnitude); }
+inline Real copysign(Real a, Real b) { return (Real)(((Integer)a & kMagnitude) | ((Integer)b & ~kMagnitude)); }
+// 0.5 with the sign of a*b.
+inline Real half_sign_product(Real a, Real b) {
+  return (Real)((((Integer)a ^ (Integer)b) & ~kMagnitude) | (Integer)splat(0.5));
+}
 
 #if ERGON_LANES == 8 && defined(__AVX512F__) && defined(__AVX512DQ__)
 

@@ -1,0 +1,89 @@
+#pragma once
+// The lowest eigenvalues of a symmetric tridiagonal matrix per lane, all at once, by Laguerre's iteration inside
+// brackets (Li and Zeng 1994, The Laguerre iteration in solving the symmetric tridiagonal eigenproblem, revisited, SIAM
+// J. Sci. Comput. 15(5)). It establishes brackets that shrink: a Laguerre step with multiplicity r, from a point
+// between which and eigenvalue j there are r - 1 others, moves towards eigenvalue j and does not pass it.
+
+#include "runtime/lanes/projection_vector.h"
+
+namespace ergon::lanes {
+namespace {
+
+// det(T - x), its first derivative and half its second, and the number of eigenvalues below x.
+struct Characteristic {
+  Real p, p1, p2;
+  Real below;
+};
+
+// squares[i] = e[i]^2 is not zero: then no two neighbours in the sequence of minors vanish.
+template <int N>
+inline Characteristic characteristic(const Real* d, const Real* squares, Real x) {
+  Real t = d[0] - x;
+  Real before = splat(1), before1 = splat(0), before2 = splat(0);
+  Real p = t, p1 = splat(-1), p2 = splat(0);
+  Real signs = half_sign_product(p, before);
+#pragma GCC unroll 12
+  for (int i = 1; i < N; ++i) {
+    t = d[i] - x;
+    Real next = t * p - squares[i - 1] * before;
+    Real next1 = t * p1 - (p + squares[i - 1] * before1);
+    Real next2 = t * p2 - (p1 + squares[i - 1] * before2);
+    signs += half_sign_product(next, p);
+    before = p, before1 = p1, before2 = p2;
+    p = next, p1 = next1, p2 = next2;
+  }
+  return {p, p1, p2, 0.5 * N - signs};
+}
+
+// The length of the step of multiplicity r, upwards for side = 1 and downwards for side = -1.
+template <int N>
+inline Real laguerre_step(const Characteristic& f, Real r, Real side) {
+  Real discriminant = (N - 1.0) * f.p1 * f.p1 - (2.0 * N) * f.p2 * f.p;
+  Real root = sqrt(max(discriminant * (N - r) * r, splat(0)));
+  return (N * f.p * r) / (copysign(root, f.p) - side * f.p1 * r);
+}
+
+// Sets x[j] to eigenvalue j (0 is the lowest) in the lanes open[j], j < count, and to zero elsewhere. Of these
+// eigenvalues there are `negative` in a lane, none of them above zero; `bound` is below all. `zero` is the
+// characteristic of T at zero or, in lanes where mirror is -1 instead of 1, that of -T. Returns the lanes in which
+// something did not converge, which clusters cause.
+template <int N>
+inline unsigned lowest_eigenvalues(const Real* d, const Real* squares, Real bound, const Characteristic& zero,
+                                   Real mirror, Real negative, int count, unsigned* open, Real* x) {
+  Real low[N / 2] = {}, high[N / 2] = {};
+  Characteristic start = characteristic<N>(d, squares, bound);
+  for (int j = 0; j < count; ++j) {
+    Mask chosen = from_bits(open[j]);
+    low[j] = select(chosen, bound + laguerre_step<N>(start, splat(j + 1), splat(1)), splat(0));
+    high[j] = select(chosen, -laguerre_step<N>(zero, max(negative - j, splat(1)), -mirror), splat(0));
+    x[j] = j == 0 ? low[j] : 0.5 * (low[j] + high[j]);
+  }
+  unsigned any_open = 0;
+  for (int iteration = 0; iteration < 16; ++iteration) {
+    any_open = 0;
+    for (int j = 0; j < count; ++j) {
+      if (open[j] == 0) continue;
+      Characteristic f = characteristic<N>(d, squares, x[j]);
+      Real r = j + 1 - f.below;
+      Mask up = less(splat(0.5), r);
+      Real side = select(up, splat(1), splat(-1));
+      r = select(up, r, 1 - r);
+      Real step = laguerre_step<N>(f, r, side);
+      Real y = x[j] + side * step;
+      low[j] = select(up, max(y, low[j]), low[j]);
+      high[j] = select(up, high[j], min(y, high[j]));
+      Mask isolated = less(r, splat(1.5));
+      Real next = select(isolated, y, 0.5 * (low[j] + high[j]));
+      Mask active = from_bits(open[j]);
+      x[j] = select(active, next, x[j]);
+      Mask done = either(both(isolated, less_equal(step, splat(1e-6))), less(high[j] - low[j], splat(1e-15)));
+      open[j] &= ~bits(done);
+      any_open |= open[j];
+    }
+    if (any_open == 0) break;
+  }
+  return any_open;
+}
+
+}  // namespace
+}  // namespace ergon::lanes
