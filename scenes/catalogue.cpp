@@ -55,8 +55,8 @@ std::string Catalogue::file_of(const std::string& law, const std::string& base, 
   }
   auto found = files_.find(law);
   if (found == files_.end())
-    throw SourceError(place, fmt::format("there is no energy '{}' in the catalogue ({} energies in {}){}", law,
-                                         files_.size(), fmt::join(folders_, ", "), did_you_mean(law, names())));
+    throw SourceError(place, fmt::format("there is no energy '{}' in {}{}", law, fmt::join(folders_, ", "),
+                                         did_you_mean(law, names())));
   return found->second;
 }
 

@@ -23,7 +23,7 @@ std::vector<double> checked_values(const Energy& energy, const Symbol& param, co
     throw SourceError(written.place, fmt::format("'{}' of {} is a {}, found {} numbers", param.name, energy.name,
                                                  to_string(param.shape), written.components.size()));
   std::vector<double> out;
-  for (const Quantity& q : written.components) {
+  for (const WrittenNumber& q : written.components) {
     if (q.unit && *q.unit != param.unit)
       throw SourceError(written.place, fmt::format("'{}' of {} must be in {}, found \"{}\", which is in {}", param.name,
                                                    energy.name, to_string(param.unit), q.text, to_string(*q.unit)));
@@ -64,9 +64,9 @@ Parameters checked_params(const Energy& energy, const EnergyUse& use) {
   for (const Symbol* param : energy.with_role(Role::param)) {
     auto written = use.params.find(param->name);
     if (written == use.params.end())
-      throw SourceError(use.place, fmt::format("{} needs the param '{}': {}, in {} {}", energy.name, param->name,
+      throw SourceError(use.place, fmt::format("{} needs the param '{}': {}, in {}{}", energy.name, param->name,
                                                param->help.empty() ? "a " + to_string(param->shape) : param->help,
-                                               to_string(param->range), to_string(param->unit)));
+                                               to_string(param->range), in_unit(*param)));
     out[param->name] = checked_values(energy, *param, written->second);
   }
   return out;

@@ -30,7 +30,7 @@ struct Located {
 };
 
 // A number as written: `unit` is absent when it was a bare number, which counts as SI.
-struct Quantity {
+struct WrittenNumber {
   double value = 0;  // SI
   std::optional<Unit> unit;
   std::string text;  // "0.5 MPa"
@@ -38,7 +38,7 @@ struct Quantity {
 
 // The values of one param of an energy, components column by column.
 struct ParamValue {
-  std::vector<Quantity> components;
+  std::vector<WrittenNumber> components;
   Place key_place;
   Place place;
 };

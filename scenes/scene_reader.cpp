@@ -18,6 +18,8 @@ Scene read_scene_text(std::string_view text, const std::string& file) {
   } catch (const toml::parse_error& bad) {
     std::string what(bad.description());
     if (what.find("unescaped control characters") != std::string::npos) what = "this string is not closed in its line";
+    // "Error while parsing X: " says nothing that the place does not.
+    if (what.starts_with("Error while")) what.erase(0, what.find(": ") + 2);
     throw SourceError(place_of(bad.source(), file), what);
   }
   return scene;

@@ -35,7 +35,7 @@ const toml::array& array_of_3(const toml::node& node, const ValueRule& rule, con
 }
 
 void append_components(const toml::node& node, const std::string& key, const std::string& file,
-                       std::vector<Quantity>& out) {
+                       std::vector<WrittenNumber>& out) {
   const toml::array* array = node.as_array();
   if (array == nullptr) {
     out.push_back(read_quantity(node, key, "a number or a string with a unit", file));
@@ -60,8 +60,8 @@ std::string describe(const toml::node& node) {
   return "a date or time";
 }
 
-Quantity read_quantity(const toml::node& node, const std::string& key, const std::string& expected,
-                       const std::string& file) {
+WrittenNumber read_quantity(const toml::node& node, const std::string& key, const std::string& expected,
+                            const std::string& file) {
   auto mismatch = [&] { fail(node, file, fmt::format("'{}' must be {}, found {}", key, expected, describe(node))); };
   if (auto v = node.as_integer()) return {static_cast<double>(v->get()), {}, describe(node)};
   if (auto v = node.as_floating_point()) return {v->get(), {}, describe(node)};
@@ -96,7 +96,7 @@ ParamValue read_param(const toml::key& key, const toml::node& node, const std::s
     return out;
   }
   // Written by rows, kept by columns.
-  std::vector<std::vector<Quantity>> read;
+  std::vector<std::vector<WrittenNumber>> read;
   for (const toml::node& row : *rows) {
     append_components(row, name, file, read.emplace_back());
     if (read.back().size() != read.front().size())
@@ -110,7 +110,7 @@ ParamValue read_param(const toml::key& key, const toml::node& node, const std::s
 }
 
 double read_number(const toml::node& node, const ValueRule& rule, const std::string& file) {
-  Quantity q = read_quantity(node, rule.key, expected_number(rule), file);
+  WrittenNumber q = read_quantity(node, rule.key, expected_number(rule), file);
   if (q.unit && *q.unit != parse_unit(rule.unit).unit)
     fail(node, file,
          fmt::format("'{}' {}, found \"{}\", which is in {}", rule.key,

@@ -25,8 +25,8 @@ std::string describe(const toml::node& node);
 
 // A number, or a string of a number and a unit. Throws SourceError for anything else, naming what was `expected`, and
 // for an unknown unit.
-Quantity read_quantity(const toml::node& node, const std::string& key, const std::string& expected,
-                       const std::string& file);
+WrittenNumber read_quantity(const toml::node& node, const std::string& key, const std::string& expected,
+                            const std::string& file);
 // The same for a param of an energy, which may be an array of quantities, or of such arrays by rows.
 ParamValue read_param(const toml::key& key, const toml::node& node, const std::string& file);
 

@@ -81,7 +81,7 @@ stiffness = "2 kN/m"
   EXPECT_EQ(block.fixed[0].min[0], -INFINITY);
   EXPECT_DOUBLE_EQ(block.fixed[0].max[0], 0.001);
   std::vector<double> by_columns;
-  for (const Quantity& q : block.energies[0].params.at("R").components) by_columns.push_back(q.value);
+  for (const WrittenNumber& q : block.energies[0].params.at("R").components) by_columns.push_back(q.value);
   EXPECT_THAT(by_columns, testing::ElementsAre(1, 4, 2, 5, 3, testing::DoubleEq(6e-3)));
   EXPECT_DOUBLE_EQ(*scene.grounds[0].stiffness, 2000);
 }
