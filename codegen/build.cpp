@@ -77,7 +77,11 @@ void build_library(const std::string& compiler, int lanes, const std::filesystem
         "one in the environment variable ERGON_CXX",
         compiler, why));
   };
-  if (error != 0) throw missing(std::strerror(error));
+  if (error != 0) {
+    std::error_code none;
+    std::filesystem::remove(messages, none);
+    throw missing(std::strerror(error));
+  }
   int status = 0;
   while (waitpid(pid, &status, 0) < 0)
     if (errno != EINTR) throw BuildError(fmt::format("waiting for '{}': {}", compiler, std::strerror(errno)));
