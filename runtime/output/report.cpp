@@ -22,7 +22,7 @@ nlohmann::ordered_json object_of(const std::vector<std::pair<std::string, double
 
 }  // namespace
 
-std::string to_json(const StepRecord& record) {
+std::string to_json(const ReportRecord& record) {
   nlohmann::ordered_json skipped = nlohmann::ordered_json::array();
   for (const SkippedPart& part : record.skipped) skipped.push_back({{"part", part.part}, {"reason", part.reason}});
   nlohmann::ordered_json json;
@@ -38,6 +38,7 @@ std::string to_json(const StepRecord& record) {
   json["skipped"] = skipped;
   json["smallest_gap"] = record.smallest_gap ? nlohmann::ordered_json(*record.smallest_gap) : nlohmann::ordered_json();
   json["contacts"] = record.contacts;
+  for (const auto& [name, number] : record.more) json[name] = number;
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 

@@ -15,7 +15,7 @@ struct SkippedPart {
 };
 
 // One record. Numbers that are not finite become null.
-struct StepRecord {
+struct ReportRecord {
   int step = 0;
   double time = 0;  // at the end of the step, s
   double dt = 0;    // s
@@ -28,12 +28,13 @@ struct StepRecord {
   std::vector<SkippedPart> skipped;
   std::optional<double> smallest_gap;  // m; none without contact
   int contacts = 0;
+  std::vector<std::pair<std::string, double>> more;  // further numbers by name, last in the line
 };
 
 // The record as a line of JSON without its line end: {"step": .., "time": .., "dt": .., "converged": ..,
 // "newton_iterations": .., "linear_iterations": .., "residual": .., "energy": {term: J}, "seconds": {part: s},
-// "skipped": [{"part": .., "reason": ..}], "smallest_gap": .., "contacts": ..}, keys in this order.
-std::string to_json(const StepRecord& record);
+// "skipped": [{"part": .., "reason": ..}], "smallest_gap": .., "contacts": .., more ..}, keys in this order.
+std::string to_json(const ReportRecord& record);
 
 // A .jsonl file to which lines are added one by one. Each line is handed to the system as a whole and at once, so that
 // it can be read while the program runs; when that fails, what was written of the line is taken back. Throws
@@ -46,7 +47,7 @@ class Report {
   Report(const Report&) = delete;
   Report& operator=(const Report&) = delete;
 
-  void append(const StepRecord& record) { append_line(to_json(record)); }
+  void append(const ReportRecord& record) { append_line(to_json(record)); }
   // For records of another kind; `json` must not hold a line end.
   void append_line(const std::string& json);
 
