@@ -137,7 +137,10 @@ class Analysis {
     if (e.text == "T") throw SourceError(e.place, message + "; a transpose is written A'");
     std::vector<std::string> candidates;
     for (const auto& [name, quantity] : known) candidates.push_back(name);
-    throw SourceError(e.place, message + did_you_mean(e.text, candidates));
+    const std::string nearest = did_you_mean(e.text, candidates);
+    const bool few = nearest.empty() && !candidates.empty() && candidates.size() <= 12;
+    throw SourceError(e.place,
+                      message + nearest + (few ? fmt::format("; known here are {}", fmt::join(candidates, ", ")) : ""));
   }
 
   void same_in_all_cases(const Let& let, const Quantity& q) {

@@ -34,11 +34,11 @@ class DeclarationReader {
       symbols.push_back(name());
     }
     const Word unit_word = take();
+    check_ambiguity(unit_word);
     const Unit unit = si_unit(unit_word);
     Range range;
     if (at_ < text_.size() && (text_[at_] == '(' || text_[at_] == '[')) range = this->range();
     const std::string help(text_.substr(at_));
-    check_ambiguity(unit_word, help);
     for (Symbol& symbol : symbols) {
       symbol.unit = unit;
       symbol.range = range;
@@ -121,7 +121,9 @@ class DeclarationReader {
     try {
       parse_unit(word.text);
     } catch (const std::invalid_argument& error) {
-      fail(word.offset, error.what());
+      const std::string message = error.what();
+      const bool told = message.find(';') != std::string::npos || message.find("expected") != std::string::npos;
+      fail(word.offset, told ? message : message + "; a declaration is written NAMES UNIT [RANGE] [HELP]");
     }
     throw std::logic_error("a unit was expected to be unknown");
   }
@@ -232,12 +234,11 @@ class DeclarationReader {
   }
 
   // `dof s t m`: "t" (tonne) would be taken as the unit.
-  void check_ambiguity(const Word& unit, const std::string& help) const {
-    const Word next{std::string_view(help).substr(0, help.find_first_of(" \t")), 0};
+  void check_ambiguity(const Word& unit) const {
+    const Word next = peek();
     if (next.text.empty() || !reads_as_name(unit.text) || !reads_as_unit(next.text)) return;
-    const std::string_view behind = std::string_view(help).substr(next.text.size());
-    const size_t more = behind.find_first_not_of(" \t");
-    if (more != std::string_view::npos && behind[more] != '(' && behind[more] != '[') return;
+    const Word behind = word_at(next.offset + next.text.size());
+    if (!behind.text.empty() && !opens_range(behind.text)) return;
     fail(unit.offset,
          fmt::format("'{}' may be a name or the unit; declare each name in a statement of its own", unit.text));
   }

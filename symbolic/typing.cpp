@@ -89,9 +89,14 @@ class Typing {
   Quantity sum(const Expression& e) const {
     const Quantity left = argument(e, 0);
     const Quantity right = argument(e, 1);
-    if (left.shape != right.shape)
-      throw SourceError(e.place, fmt::format("'{}' needs the same shape on both sides: expected {}, found {}",
-                                             sign_of(e.kind), to_string(left.shape), to_string(right.shape)));
+    if (left.shape != right.shape) {
+      const Shape larger = left.shape.scalar() ? right.shape : left.shape;
+      const bool unit_matrix = (left.shape.scalar() || right.shape.scalar()) && larger.rows == larger.cols;
+      throw SourceError(e.place,
+                        fmt::format("'{}' needs the same shape on both sides: expected {}, found {}", sign_of(e.kind),
+                                    to_string(left.shape), to_string(right.shape)) +
+                            (unit_matrix ? fmt::format("; the unit matrix is identity({})", larger.rows) : ""));
+    }
     if (const std::string conflict = unit_conflict(left, right); !conflict.empty())
       throw SourceError(e.place, fmt::format("'{}' needs the same unit on both sides: {}", sign_of(e.kind), conflict));
     return left.any_unit ? right : left;
