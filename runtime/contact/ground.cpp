@@ -224,7 +224,7 @@ double GroundContact::lag_friction(const Eigen::Matrix3Xd& x, const Eigen::Matri
     if (side.friction < 0) continue;
     Eigen::VectorXd before = Eigen::VectorXd::Zero(x.cols());
     for (size_t i = 0; i < side.rubbing.size(); ++i) before[side.rubbing[i]] = side.friction_force[i];
-    side.rubbing.clear();
+    found_.clear();
     side.friction_force.clear();
     std::vector<double> start;
     for (int v : vertices_) {
@@ -232,12 +232,13 @@ double GroundContact::lag_friction(const Eigen::Matrix3Xd& x, const Eigen::Matri
       change += std::abs(force - before[v]);
       if (!(force > 0)) continue;
       sum += force;
-      side.rubbing.push_back(v);
+      found_.push_back(v);
       side.friction_force.push_back(force);
       start.insert(start.end(), xlag.col(v).begin(), xlag.col(v).end());
     }
     Potential& friction = system_->potential(side.friction);
-    friction.set_stencils(side.rubbing, X_, {});
+    if (found_ != side.rubbing) friction.set_stencils(found_, X_, {});
+    side.rubbing = found_;
     if (side.rubbing.empty()) continue;
     friction.set_lag("force", side.friction_force);
     friction.set_lag("xlag", start);

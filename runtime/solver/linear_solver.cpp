@@ -2,6 +2,7 @@
 
 #include <cholmod.h>
 #include <dlfcn.h>
+#include <omp.h>
 
 #include <algorithm>
 #include <stdexcept>
@@ -14,23 +15,29 @@ namespace ergon {
 
 namespace {
 
-// Below this many operations per factorisation a second thread of the BLAS gains nothing, and its workers, which spin
-// for a while after each call, would take the cores from evaluation.
+// Below this many operations per factorisation threads cost more than they bring: CHOLMOD opens a team of four for each
+// pair of supernodes (two thirds of the processor time at 2,000 unknowns), and the workers of the BLAS spin for a while
+// after each call.
 constexpr double flops_worth_threads = 1e9;
 
-// Limits OpenBLAS to one thread while it lives. Does nothing with another BLAS.
-class SingleThreadedBlas {
+// Keeps CHOLMOD and OpenBLAS (other BLAS libraries are left as they are) to the calling thread while it lives.
+class SingleThreaded {
  public:
-  explicit SingleThreadedBlas(bool wanted) {
-    if (!wanted || !set_threads() || !get_threads()) return;
-    before_ = get_threads()();
-    if (before_ > 1) set_threads()(1);
+  explicit SingleThreaded(bool wanted) : wanted_(wanted) {
+    if (!wanted_) return;
+    levels_ = omp_get_max_active_levels();
+    omp_set_max_active_levels(0);
+    if (!set_threads() || !get_threads()) return;
+    blas_threads_ = get_threads()();
+    if (blas_threads_ > 1) set_threads()(1);
   }
-  ~SingleThreadedBlas() {
-    if (before_ > 1) set_threads()(before_);
+  ~SingleThreaded() {
+    if (!wanted_) return;
+    omp_set_max_active_levels(levels_);
+    if (blas_threads_ > 1) set_threads()(blas_threads_);
   }
-  SingleThreadedBlas(const SingleThreadedBlas&) = delete;
-  SingleThreadedBlas& operator=(const SingleThreadedBlas&) = delete;
+  SingleThreaded(const SingleThreaded&) = delete;
+  SingleThreaded& operator=(const SingleThreaded&) = delete;
 
  private:
   using Set = void (*)(int);
@@ -43,7 +50,9 @@ class SingleThreadedBlas {
     static const Get get = reinterpret_cast<Get>(dlsym(RTLD_DEFAULT, "openblas_get_num_threads"));
     return get;
   }
-  int before_ = 0;
+  bool wanted_;
+  int levels_ = 0;
+  int blas_threads_ = 0;
 };
 
 // The matrix's pattern as a graph of block rows: ordering it finds the same fill at a ninth of the entries.
@@ -194,7 +203,7 @@ std::optional<int> LinearSolver::factor(const BlockMatrix& matrix, double shift)
   s.factored = false;
   ++s.factorisations;
   if (s.rows > 0) {
-    const SingleThreadedBlas limit(s.flops < flops_worth_threads);
+    const SingleThreaded limit(s.flops < flops_worth_threads);
     cholmod_sparse a = view(matrix);
     double beta[2] = {shift, 0};
     cholmod_factorize_p(&a, beta, nullptr, 0, s.factor, &s.common);
@@ -213,7 +222,7 @@ void LinearSolver::solve(const Eigen::VectorXd& right_side, Eigen::VectorXd& sol
   if (right_side.size() != s.rows) throw std::logic_error("LinearSolver::solve: right side of another size");
   solution.resize(s.rows);
   if (s.rows == 0) return;
-  const SingleThreadedBlas limit(s.flops < flops_worth_threads);
+  const SingleThreaded limit(s.flops < flops_worth_threads);
   cholmod_dense b{};
   b.nrow = b.d = b.nzmax = static_cast<size_t>(s.rows);
   b.ncol = 1;

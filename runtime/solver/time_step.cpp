@@ -68,8 +68,6 @@ StepRecord TimeStepper::step(State& state) {
   {
     const Stopwatch watch(record.seconds.total);
     record.dt = options_.dt;
-    record.step = state.step;
-    record.time = state.time;
 
     const Eigen::Matrix3Xd xhat = predict(state);
     set_lags(state.x, xhat);
@@ -77,9 +75,6 @@ StepRecord TimeStepper::step(State& state) {
     result = solve(state.x, x, record);
     record.accepted = result.converged || (options_.accept_unconverged && result.iterations > 0);
     if (record.accepted) advance(state, x);
-
-    record.step = state.step;
-    record.time = state.time;
   }
   report(state, result, record);
   return record;
@@ -152,19 +147,21 @@ void TimeStepper::advance(State& state, const Eigen::Matrix3Xd& x) const {
   state.time += options_.dt;
 }
 
-void TimeStepper::report(const State& state, const NewtonResult& result, StepRecord& record) const {
+void TimeStepper::report(const State& state, const NewtonResult& result, StepRecord& record) {
+  record.step = state.step;
+  record.time = state.time;
   record.converged = result.converged;
   record.reason = result.reason;
   record.residual = result.residual;
   record.step_speed = result.step_speed;
-  record.energy = energies_of(result.evaluation, state.v);
+  record.skipped = skipped_parts();
+  record.energy = record.accepted ? energies_of(result.evaluation, state.v) : energies(state);
   if (ground_) {
     record.contacts = ground_->active_count();
     record.smallest_gap = ground_->smallest_gap(state.x);
     record.barrier_stiffness = ground_->largest_stiffness();
     record.energy_added = ground_->energy_added();
   }
-  record.skipped = skipped_parts();
 }
 
 Energies TimeStepper::energies(const State& state) {

@@ -95,7 +95,7 @@ class TimeStepper {
   void begin_contact(const State& state, StepRecord& record);
   NewtonResult solve(const Eigen::Matrix3Xd& start, Eigen::Matrix3Xd& x, StepRecord& record);
   void advance(State& state, const Eigen::Matrix3Xd& x) const;
-  void report(const State& state, const NewtonResult& result, StepRecord& record) const;
+  void report(const State& state, const NewtonResult& result, StepRecord& record);
   Energies energies_of(const Evaluation& evaluation, const Eigen::Matrix3Xd& v) const;
   std::vector<std::string> skipped_parts() const;
 

@@ -182,6 +182,7 @@ TEST(TimeStep, FailedStepLeavesTheStateAndSaysWhy) {
   EXPECT_EQ(scene.state.step, before.step);
   EXPECT_EQ(scene.state.time, before.time);
   EXPECT_EQ(record.smallest_gap, 0.5);
+  EXPECT_DOUBLE_EQ(record.energy.total, 9.81 * 0.5 + 100 * 100 / 2);
 
   scene.stepper->options().max_iterations = 200;
   EXPECT_TRUE(scene.step().accepted);
