@@ -107,11 +107,17 @@ std::array<int, 3> corners_of(const Mesh& surface, int triangle) {
 }
 
 void nest(const Mesh& surface, std::vector<SurfacePart>& parts) {
+  std::vector<Eigen::AlignedBox3d> boxes(parts.size());
+  for (size_t p = 0; p < parts.size(); ++p) {
+    for (const auto& t : parts[p].triangles) {
+      for (const int v : t) boxes[p].extend(Eigen::Vector3d(surface.X.col(v)));
+    }
+  }
   for (size_t inner = 0; inner < parts.size(); ++inner) {
     const Eigen::Vector3d point = surface.X.col(parts[inner].triangles[0][0]);
     double smallest = std::numeric_limits<double>::infinity();
     for (size_t outer = 0; outer < parts.size(); ++outer) {
-      if (outer == inner || !encloses(surface, parts[outer], point)) continue;
+      if (outer == inner || !boxes[outer].contains(point) || !encloses(surface, parts[outer], point)) continue;
       ++parts[inner].depth;
       const double volume = enclosed_volume(surface.X, parts[outer].triangles);
       if (volume < smallest) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <unsupported/Eigen/BVH>
 
 #include "runtime/mesh/closed_surface.h"
 
@@ -69,40 +70,47 @@ bool cut(const Corners& a, const Corners& b) {
   return false;
 }
 
+// Looks at each pair of triangles whose boxes meet, for Eigen::BVIntersect.
+struct PairSearch {
+  const Eigen::Matrix3Xd& X;
+  const std::vector<std::array<int, 3>>& triangles;
+  const std::vector<Eigen::AlignedBox3d>& boxes;
+  std::array<int, 2> found{-1, -1};
+
+  Corners corners(int t) const {
+    const auto& v = triangles[static_cast<size_t>(t)];
+    return {X.col(v[0]), X.col(v[1]), X.col(v[2])};
+  }
+  bool intersectVolumeVolume(const Eigen::AlignedBox3d& a, const Eigen::AlignedBox3d& b) { return a.intersects(b); }
+  bool intersectVolumeObject(const Eigen::AlignedBox3d& a, int b) {
+    return a.intersects(boxes[static_cast<size_t>(b)]);
+  }
+  bool intersectObjectVolume(int a, const Eigen::AlignedBox3d& b) { return intersectVolumeObject(b, a); }
+  // True ends the search. Each pair comes twice; one of them is looked at.
+  bool intersectObjectObject(int a, int b) {
+    if (a >= b || !boxes[static_cast<size_t>(a)].intersects(boxes[static_cast<size_t>(b)])) return false;
+    const auto& va = triangles[static_cast<size_t>(a)];
+    const auto& vb = triangles[static_cast<size_t>(b)];
+    if (std::find_first_of(va.begin(), va.end(), vb.begin(), vb.end()) != va.end()) return false;
+    if (!cut(corners(a), corners(b))) return false;
+    found = {a, b};
+    return true;
+  }
+};
+
 }  // namespace
 
 std::array<int, 2> crossing_triangles(const Eigen::Matrix3Xd& X, const std::vector<std::array<int, 3>>& triangles) {
-  // Sweep along the longest axis over the triangles' boxes.
-  const Eigen::Vector3d extent = X.rowwise().maxCoeff() - X.rowwise().minCoeff();
-  int axis = 0;
-  extent.maxCoeff(&axis);
-  const size_t count = triangles.size();
-  std::vector<Eigen::AlignedBox3d> boxes(count);
-  for (size_t t = 0; t < count; ++t) {
+  std::vector<int> numbers(triangles.size());
+  std::iota(numbers.begin(), numbers.end(), 0);
+  std::vector<Eigen::AlignedBox3d> boxes(triangles.size());
+  for (size_t t = 0; t < triangles.size(); ++t) {
     for (const int v : triangles[t]) boxes[t].extend(Eigen::Vector3d(X.col(v)));
   }
-  std::vector<int> order(count);
-  std::iota(order.begin(), order.end(), 0);
-  const auto box = [&](int t) -> const Eigen::AlignedBox3d& { return boxes[static_cast<size_t>(t)]; };
-  std::sort(order.begin(), order.end(), [&](int a, int b) {
-    return box(a).min()(axis) != box(b).min()(axis) ? box(a).min()(axis) < box(b).min()(axis) : a < b;
-  });
-  const auto corners = [&](int t) {
-    const auto& v = triangles[static_cast<size_t>(t)];
-    return Corners{X.col(v[0]), X.col(v[1]), X.col(v[2])};
-  };
-  for (size_t i = 0; i < count; ++i) {
-    const int a = order[i];
-    for (size_t j = i + 1; j < count && box(order[j]).min()(axis) <= box(a).max()(axis); ++j) {
-      const int b = order[j];
-      if (!box(a).intersects(box(b))) continue;
-      const auto& va = triangles[static_cast<size_t>(a)];
-      const auto& vb = triangles[static_cast<size_t>(b)];
-      const bool adjacent = std::find_first_of(va.begin(), va.end(), vb.begin(), vb.end()) != va.end();
-      if (!adjacent && cut(corners(a), corners(b))) return {std::min(a, b), std::max(a, b)};
-    }
-  }
-  return {-1, -1};
+  const Eigen::KdBVH<double, 3, int> tree(numbers.begin(), numbers.end(), boxes.begin(), boxes.end());
+  PairSearch search{X, triangles, boxes};
+  Eigen::BVIntersect(tree, tree, search);
+  return search.found;
 }
 
 }  // namespace ergon

@@ -1,6 +1,6 @@
 #pragma once
-// Meshes from files, and solids from surfaces. Every result is finite, names only its own vertices, and is the same
-// for the same input. Gmsh works behind these functions; it keeps global state, so calls wait for one another.
+// Meshes from files, and solids from surfaces. Every result is finite, names only its own vertices, and is the same for
+// the same input. Gmsh fills surfaces; it keeps global state, so that calls of fill_surface wait for one another.
 
 #include <string>
 
@@ -8,10 +8,11 @@
 
 namespace ergon {
 
-// Reads a Gmsh .msh file (any version Gmsh reads). Cells of the highest dimension present are kept: Tet4, Tet10, Hex8,
-// or Tri3 when there are no solids. Vertices of no kept cell are left out; the others stay in the order of their tags.
-// Throws InputError: missing file, unknown format, no cells, more than one kind of cell, cells of an unknown kind, a
-// coordinate that is not finite, or what Gmsh itself reports.
+// Reads a .msh file of Gmsh, format 2 or 4.1, text or binary. (Not through Gmsh itself: 4.8 crashes on a cell that
+// names a missing node.) Cells of the highest dimension present are kept: Tet4, Tet10, Hex8, or Tri3 when there are no
+// solids. Vertices of no kept cell are left out; the others are in the order of their tags. Throws InputError with the
+// line (text): missing file, another format, no cells, more than one kind of cell, cells of another kind, a node that
+// does not exist or exists twice, a coordinate that is not finite, a file that is cut off.
 Mesh read_mesh(const std::string& path);
 
 // Reads a triangle surface from .obj, .stl (text or binary) or .ply (text or binary). Vertices with equal coordinates

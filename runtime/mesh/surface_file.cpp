@@ -19,17 +19,6 @@
 namespace ergon {
 namespace {
 
-std::string whole_file(const std::string& path) {
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
-  if (!file) throw InputError(fmt::format("{}: cannot be opened: {}", path, std::strerror(errno)));
-  std::string text;
-  char block[1 << 16];
-  size_t count = 0;
-  while ((count = std::fread(block, 1, sizeof block, file.get())) > 0) text.append(block, count);
-  if (std::ferror(file.get())) throw InputError(fmt::format("{}: cannot be read: {}", path, std::strerror(errno)));
-  return text;
-}
-
 // Lexicographic order of coordinates; -0 and 0 are the same.
 struct PointOrder {
   bool operator()(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const {
@@ -72,6 +61,17 @@ Mesh merged(const SurfaceFile& surface, const std::string& path) {
 }
 
 }  // namespace
+
+std::string whole_file(const std::string& path) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
+  if (!file) throw InputError(fmt::format("{}: cannot be opened: {}", path, std::strerror(errno)));
+  std::string text;
+  char block[1 << 16];
+  size_t count = 0;
+  while ((count = std::fread(block, 1, sizeof block, file.get())) > 0) text.append(block, count);
+  if (std::ferror(file.get())) throw InputError(fmt::format("{}: cannot be read: {}", path, std::strerror(errno)));
+  return text;
+}
 
 bool TextLines::next() {
   if (rest_.empty()) return false;

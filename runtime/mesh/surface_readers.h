@@ -22,6 +22,9 @@ SurfaceFile read_obj(std::string_view text, const std::string& path);
 SurfaceFile read_stl(std::string_view text, const std::string& path);
 SurfaceFile read_ply(std::string_view text, const std::string& path);
 
+// The content of a file. Throws InputError naming the path and the system's reason.
+std::string whole_file(const std::string& path);
+
 // A text file line by line, as words; line numbers count from 1.
 class TextLines {
  public:

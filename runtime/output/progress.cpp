@@ -11,6 +11,7 @@ namespace ergon {
 namespace {
 
 constexpr size_t kRecentSteps = 50;
+constexpr size_t kWidth = 79;  // a longer line would wrap on a terminal and could not be rewritten
 
 }  // namespace
 
@@ -52,9 +53,10 @@ void Progress::update(int step, double time, const std::string& note) {
 
   std::string line = fmt::format("step {}/{}  {:3d} %  t = {:.4g} s", step, steps_,
                                  static_cast<int>(100LL * std::clamp(step, 0, steps_) / steps_), time);
-  if (!note.empty()) line += "  " + note;
   line += done ? fmt::format("  took {}", duration_text(now - start_)) : fmt::format("  {} left", duration_text(left));
+  if (!note.empty()) line += "  " + note;
   if (is_terminal_) {
+    if (line.size() > kWidth) line.resize(kWidth);
     // Back to the start of the line, and clear what is longer than the new one.
     out_ << '\r' << line << "\x1b[K" << std::flush;
     line_open_ = true;

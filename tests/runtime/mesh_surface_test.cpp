@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <bit>
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <random>
 
 #include "runtime/error.h"
 #include "runtime/mesh/mesh_import.h"
@@ -280,6 +282,34 @@ TEST_F(mesh_surface, binary_ply_errors_name_the_record) {
   const size_t body = data.find("end_header\n") + 11;
   data.replace(body + 17 + 8, 8, bytes(std::nan("")));
   EXPECT_EQ(error_of("a.ply", data), "a.ply: vertex 1: z is nan; it must be finite");
+}
+
+TEST_F(mesh_surface, damaged_files_give_an_error_or_a_sound_mesh) {
+  const std::vector<std::pair<std::string, std::string>> files{
+      {"a.obj", kTetObj},
+      {"a.stl", kStl},
+      {"b.stl", binary_stl({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0.25F})},
+      {"a.ply", kPly},
+      {"b.ply", binary_ply(false)}};
+  std::mt19937 generator(1);
+  int errors = 0, meshes = 0;
+  for (int trial = 0; trial < 500; ++trial) {
+    auto [name, content] = files[static_cast<size_t>(trial) % files.size()];
+    for (unsigned changes = generator() % 4; changes > 0; --changes) {
+      content[generator() % content.size()] = static_cast<char>(generator() % 256);
+    }
+    if (generator() % 3 == 0) content.resize(generator() % content.size());
+    try {
+      const Mesh mesh = read(name, content);
+      ++meshes;
+      ASSERT_TRUE(mesh.X.allFinite());
+      for (const int v : mesh.cells) ASSERT_TRUE(v >= 0 && v < mesh.vertices());
+    } catch (const InputError&) {
+      ++errors;
+    }
+  }
+  EXPECT_GT(errors, 125);
+  EXPECT_GT(meshes, 50);
 }
 
 TEST_F(mesh_surface, the_bunny_is_as_its_header_says) {

@@ -1,16 +1,12 @@
 #include "runtime/mesh/mesh_import.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <gmsh.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
-#include <map>
 #include <mutex>
+#include <numeric>
 
 #include "runtime/error.h"
 #include "runtime/mesh/closed_surface.h"
@@ -73,94 +69,27 @@ class GmshSession {
   std::unique_lock<std::mutex> lock_;
 };
 
-// Gmsh's numbers of the cells that a Mesh can hold.
-struct GmshCell {
-  int type;
-  Element element;
-};
-constexpr GmshCell kGmshCells[] = {{4, Element::tet4}, {11, Element::tet10}, {5, Element::hex8}, {2, Element::tri3}};
-
-int gmsh_type_of(Element element) {
-  for (const GmshCell& cell : kGmshCells) {
-    if (cell.element == element) return cell.type;
-  }
-  return 0;
-}
-
-// A .msh file must say so: Gmsh would run any other text as a script.
-void check_is_msh(const std::string& path) {
-  std::ifstream file(path);
-  std::string word;
-  if (!file) throw InputError(fmt::format("{}: cannot be opened: {}", path, std::strerror(errno)));
-  if (path.size() < 4 || path.substr(path.size() - 4) != ".msh") {
-    throw InputError(path + ": unknown mesh format; a mesh is read from a .msh file of Gmsh");
-  }
-  file >> word;
-  if (word != "$MeshFormat") throw InputError(path + ": is not a Gmsh mesh: it does not start with $MeshFormat");
-}
-
-Element element_in_model(const std::string& path) {
-  for (int dimension = 3; dimension >= 2; --dimension) {
-    std::vector<int> types;
-    gmsh::model::mesh::getElementTypes(types, dimension);
-    if (types.empty()) continue;
-    std::vector<std::string> names;
-    for (const int type : types) {
-      std::string name;
-      int order = 0, nodes = 0, primary = 0, ignored = 0;
-      std::vector<double> coordinates;
-      gmsh::model::mesh::getElementProperties(type, name, ignored, order, nodes, coordinates, primary);
-      names.push_back(name);
-    }
-    const auto known = std::find_if(std::begin(kGmshCells), std::end(kGmshCells),
-                                    [&](const GmshCell& cell) { return cell.type == types[0]; });
-    if (types.size() > 1) {
-      throw InputError(
-          fmt::format("{}: holds more than one kind of cell: {}; mesh it with one kind", path, fmt::join(names, ", ")));
-    }
-    if (known == std::end(kGmshCells)) {
-      throw InputError(fmt::format("{}: cells of the kind '{}' are not supported; known are Tet4, Tet10, Hex8 and Tri3",
-                                   path, names[0]));
-    }
-    return known->element;
-  }
-  throw InputError(path + ": holds no tetrahedra, hexahedra or triangles");
-}
-
-Mesh mesh_of_model(Element element, const std::string& path) {
-  std::vector<std::size_t> tags, nodes, cell_tags, cell_nodes;
+// The tetrahedra of Gmsh's model; vertices in the order of their tags.
+Mesh mesh_of_model(const std::string& source) {
+  constexpr int kTetrahedron = 4;
+  std::vector<std::size_t> tags, cell_tags, cell_nodes;
   std::vector<double> coordinates, ignored;
   gmsh::model::mesh::getNodes(tags, coordinates, ignored, -1, -1, false, false);
-  gmsh::model::mesh::getElementsByType(gmsh_type_of(element), cell_tags, cell_nodes);
-  std::map<std::size_t, std::array<double, 3>> points;  // by tag
-  for (size_t i = 0; i < tags.size(); ++i) {
-    points[tags[i]] = {coordinates[3 * i], coordinates[3 * i + 1], coordinates[3 * i + 2]};
-  }
-  nodes = cell_nodes;
-  std::sort(nodes.begin(), nodes.end());
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  gmsh::model::mesh::getElementsByType(kTetrahedron, cell_tags, cell_nodes);
+  std::vector<size_t> order(tags.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return tags[a] < tags[b]; });
   Mesh mesh;
-  mesh.element = element;
-  mesh.source = path;
-  mesh.X.resize(3, static_cast<Eigen::Index>(nodes.size()));
-  for (size_t i = 0; i < nodes.size(); ++i) {
-    const auto place = points.find(nodes[i]);
-    if (place == points.end())
-      throw InputError(fmt::format("{}: a cell names node {}, which does not exist", path, nodes[i]));
-    const Eigen::Vector3d point(place->second[0], place->second[1], place->second[2]);
-    if (!point.allFinite()) {
-      throw InputError(fmt::format("{}: node {} is ({}, {}, {}); it must be finite", path, nodes[i], point.x(),
-                                   point.y(), point.z()));
-    }
-    mesh.X.col(static_cast<Eigen::Index>(i)) = point;
+  mesh.element = Element::tet4;
+  mesh.source = source;
+  mesh.X.resize(3, static_cast<Eigen::Index>(tags.size()));
+  std::vector<std::size_t> sorted;
+  for (const size_t i : order) {
+    mesh.X.col(static_cast<Eigen::Index>(sorted.size())) = Eigen::Map<const Eigen::Vector3d>(&coordinates[3 * i]);
+    sorted.push_back(tags[i]);
   }
-  mesh.cells.reserve(cell_nodes.size());
   for (const std::size_t node : cell_nodes) {
-    mesh.cells.push_back(static_cast<int>(std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin()));
-  }
-  if (element == Element::tet10) {
-    // Gmsh lists the nodes of edges (2, 3) and (1, 3) the other way round than VTK.
-    for (size_t c = 0; c < mesh.cells.size(); c += 10) std::swap(mesh.cells[c + 8], mesh.cells[c + 9]);
+    mesh.cells.push_back(static_cast<int>(std::lower_bound(sorted.begin(), sorted.end(), node) - sorted.begin()));
   }
   return mesh;
 }
@@ -224,13 +153,6 @@ void check_filled(const Mesh& surface, const Mesh& solid, const std::vector<Surf
 
 }  // namespace
 
-Mesh read_mesh(const std::string& path) {
-  check_is_msh(path);
-  GmshSession session;
-  session.run(path, "read the mesh", [&] { gmsh::merge(path); });
-  return mesh_of_model(element_in_model(path), path);
-}
-
 Mesh fill_surface(const Mesh& surface, const FillOptions& options) {
   if (!(options.max_edge_length >= 0) || !std::isfinite(options.max_edge_length)) {
     throw InputError(
@@ -253,7 +175,7 @@ Mesh fill_surface(const Mesh& surface, const FillOptions& options) {
     add_solids(surface, parts);
     gmsh::model::mesh::generate(3);
   });
-  const Mesh solid = mesh_of_model(Element::tet4, surface.source);
+  const Mesh solid = mesh_of_model(surface.source);
   check_filled(surface, solid, parts);
   check_mesh(solid);
   return solid;

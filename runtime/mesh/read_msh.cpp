@@ -1,0 +1,331 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <map>
+#include <optional>
+#include <unordered_map>
+
+#include "runtime/error.h"
+#include "runtime/mesh/mesh_import.h"
+#include "runtime/mesh/surface_readers.h"
+
+namespace ergon {
+namespace {
+
+// Gmsh's numbers of cells (Gmsh reference manual, MSH file format).
+struct MshCell {
+  int type;
+  const char* name;
+  int nodes;
+  int dimension;
+  std::optional<Element> element = std::nullopt;
+};
+const MshCell kMshCells[] = {{1, "Line 2", 2, 1},
+                             {2, "Triangle 3", 3, 2, Element::tri3},
+                             {3, "Quadrilateral 4", 4, 2},
+                             {4, "Tetrahedron 4", 4, 3, Element::tet4},
+                             {5, "Hexahedron 8", 8, 3, Element::hex8},
+                             {6, "Prism 6", 6, 3},
+                             {7, "Pyramid 5", 5, 3},
+                             {8, "Line 3", 3, 1},
+                             {9, "Triangle 6", 6, 2},
+                             {10, "Quadrilateral 9", 9, 2},
+                             {11, "Tetrahedron 10", 10, 3, Element::tet10},
+                             {12, "Hexahedron 27", 27, 3},
+                             {13, "Prism 18", 18, 3},
+                             {14, "Pyramid 14", 14, 3},
+                             {15, "Point", 1, 0},
+                             {16, "Quadrilateral 8", 8, 2},
+                             {17, "Hexahedron 20", 20, 3},
+                             {18, "Prism 15", 15, 3},
+                             {19, "Pyramid 13", 13, 3},
+                             {21, "Triangle 10", 10, 2},
+                             {23, "Triangle 15", 15, 2},
+                             {26, "Line 4", 4, 1},
+                             {27, "Line 5", 5, 1},
+                             {29, "Tetrahedron 20", 20, 3},
+                             {30, "Tetrahedron 35", 35, 3}};
+
+class MshReader {
+ public:
+  MshReader(std::string_view data, std::string path) : rest_(data), path_(std::move(path)) {}
+
+  Mesh read() {
+    read_format();
+    while (const auto word = next_word()) {
+      if (*word == "$Nodes") {
+        version_ < 4 ? read_nodes_2() : read_nodes_4();
+        expect("$EndNodes");
+      } else if (*word == "$Elements") {
+        version_ < 4 ? read_cells_2() : read_cells_4();
+        expect("$EndElements");
+      } else if (*word == "$ParametricNodes") {
+        fail("parametric nodes are read in format 4.1 only; save the mesh in that format");
+      } else if ((*word)[0] == '$') {
+        skip_section(*word);
+      } else {
+        fail(fmt::format("expected a section such as $Nodes, found '{}'", *word));
+      }
+    }
+    return mesh();
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& message) const {
+    // Lines do not count in binary data.
+    throw InputError(binary_ ? fmt::format("{}: {}", path_, message) : fmt::format("{}:{}: {}", path_, line_, message));
+  }
+
+  std::optional<std::string_view> next_word() {
+    size_t start = 0;
+    for (; start < rest_.size() && std::strchr(" \t\r\n", rest_[start]); ++start) line_ += rest_[start] == '\n';
+    if (start == rest_.size()) return std::nullopt;
+    const size_t end = std::min(rest_.find_first_of(" \t\r\n", start), rest_.size());
+    const std::string_view word = rest_.substr(start, end - start);
+    rest_.remove_prefix(end);
+    return word;
+  }
+
+  std::string_view word(const char* what) {
+    const auto next = next_word();
+    if (!next) fail(fmt::format("the file ends before {}", what));
+    return *next;
+  }
+
+  void expect(std::string_view wanted) {
+    const std::string_view found = word(std::string(wanted).c_str());
+    if (found != wanted) fail(fmt::format("expected '{}', found '{}'", wanted, found));
+  }
+
+  template <class Number>
+  Number binary_number(const char* what) {
+    Number value;
+    if (rest_.size() < sizeof value) fail(fmt::format("the file ends before {}", what));
+    std::memcpy(&value, rest_.data(), sizeof value);
+    rest_.remove_prefix(sizeof value);
+    return value;
+  }
+
+  // A whole number that is binary data of the type Stored, or a word.
+  template <class Stored>
+  long long whole(const char* what, bool as_text = false) {
+    if (binary_ && !as_text) return static_cast<long long>(binary_number<Stored>(what));
+    const std::string_view text = word(what);
+    long long value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size()) {
+      fail(fmt::format("{} is '{}', which is not a whole number", what, text));
+    }
+    return value;
+  }
+
+  template <class Stored>
+  long long count(const char* what, bool as_text = false) {
+    const long long value = whole<Stored>(what, as_text);
+    if (value < 0) fail(fmt::format("{} is {}; it must not be negative", what, value));
+    return value;
+  }
+
+  double number(const char* what) {
+    if (binary_) return binary_number<double>(what);
+    const std::string_view text = word(what);
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size()) {
+      fail(fmt::format("{} is '{}', which is not a number", what, text));
+    }
+    return value;
+  }
+
+  void read_format() {
+    const auto first = next_word();
+    if (!first || *first != "$MeshFormat") {
+      throw InputError(path_ + ": is not a Gmsh mesh: it does not start with $MeshFormat");
+    }
+    const std::string version(word("the version"));
+    const bool old = version.starts_with("2");
+    if (!old && version != "4.1") {
+      fail(fmt::format("format {} is not supported; save the mesh in format 4.1 or 2.2", version));
+    }
+    version_ = old ? 2 : 4;
+    const bool binary = whole<int>("the file type", true) != 0;
+    if (const long long size = whole<int>("the data size", true); size != 8) {
+      fail(fmt::format("the data size is {}; it must be 8", size));
+    }
+    if (binary) {
+      binary_ = true;
+      end_line();
+      if (binary_number<std::int32_t>("the byte order") != 1) fail("was written in another byte order");
+    }
+    expect("$EndMeshFormat");
+    end_line();
+  }
+
+  // Binary data starts right behind the end of a line.
+  void end_line() {
+    if (!binary_) return;
+    const size_t end = rest_.find('\n');
+    rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+  }
+
+  void skip_section(std::string_view name) {
+    const std::string end = "$End" + std::string(name.substr(1));
+    const size_t at = rest_.find(end);
+    if (at == std::string_view::npos) fail(fmt::format("the section {} has no {}", name, end));
+    line_ += static_cast<int>(std::count(rest_.begin(), rest_.begin() + static_cast<long>(at), '\n'));
+    rest_.remove_prefix(at + end.size());
+  }
+
+  Eigen::Vector3d point(long long tag) {
+    Eigen::Vector3d point;
+    for (int axis = 0; axis < 3; ++axis) point(axis) = number("a coordinate");
+    if (!point.allFinite()) {
+      fail(fmt::format("node {} is ({}, {}, {}); it must be finite", tag, point.x(), point.y(), point.z()));
+    }
+    return point;
+  }
+
+  void add_node(long long tag) {
+    if (!nodes_.emplace(tag, point(tag)).second) fail(fmt::format("node {} is defined twice", tag));
+  }
+
+  void read_nodes_2() {
+    const long long nodes = count<int>("the number of nodes", true);
+    end_line();
+    for (long long i = 0; i < nodes; ++i) add_node(whole<std::int32_t>("a node's number"));
+  }
+
+  void read_nodes_4() {
+    end_line();
+    const long long blocks = count<std::uint64_t>("the number of blocks of nodes");
+    for (int i = 0; i < 3; ++i) whole<std::uint64_t>("the number or range of nodes");
+    for (long long b = 0; b < blocks; ++b) {
+      const long long dimension = count<std::int32_t>("a block's dimension");
+      whole<std::int32_t>("a block's entity");
+      const bool parametric = whole<std::int32_t>("a block's parametric mark") != 0;
+      const long long nodes = count<std::uint64_t>("the number of nodes of a block");
+      std::vector<long long> tags;
+      for (long long i = 0; i < nodes; ++i) tags.push_back(whole<std::uint64_t>("a node's number"));
+      for (const long long tag : tags) {
+        add_node(tag);
+        for (long long i = 0; parametric && i < std::min(dimension, 3LL); ++i) number("a parameter");
+      }
+    }
+  }
+
+  const MshCell& kind(long long type) const {
+    for (const MshCell& cell : kMshCells) {
+      if (cell.type == type) return cell;
+    }
+    fail(fmt::format("unknown type of element: {}", type));
+  }
+
+  template <class Stored>
+  void add_cell(const MshCell& kind, long long tag) {
+    std::vector<long long>& cells = cells_[kind.type];
+    for (int i = 0; i < kind.nodes; ++i) {
+      const long long node = whole<Stored>("a node of an element");
+      if (!nodes_.contains(node)) fail(fmt::format("element {} names node {}, which does not exist", tag, node));
+      cells.push_back(node);
+    }
+  }
+
+  void read_cells_2() {
+    const long long elements = count<int>("the number of elements", true);
+    end_line();
+    for (long long done = 0; done < elements;) {
+      // In text each element is a block of its own, and its number comes first.
+      long long tag = binary_ ? 0 : whole<int>("an element's number");
+      const MshCell& cell = kind(whole<std::int32_t>("an element's type"));
+      const long long in_block = binary_ ? count<std::int32_t>("the number of elements of a block") : 1;
+      const long long tags = count<std::int32_t>("the number of an element's tags");
+      if (in_block == 0) fail("a block of elements is empty");
+      for (long long i = 0; i < in_block; ++i) {
+        if (binary_) tag = whole<std::int32_t>("an element's number");
+        for (long long k = 0; k < tags; ++k) whole<std::int32_t>("an element's tag");
+        add_cell<std::int32_t>(cell, tag);
+      }
+      done += in_block;
+    }
+  }
+
+  void read_cells_4() {
+    end_line();
+    const long long blocks = count<std::uint64_t>("the number of blocks of elements");
+    for (int i = 0; i < 3; ++i) whole<std::uint64_t>("the number or range of elements");
+    for (long long b = 0; b < blocks; ++b) {
+      whole<std::int32_t>("a block's dimension");
+      whole<std::int32_t>("a block's entity");
+      const MshCell& cell = kind(whole<std::int32_t>("an element's type"));
+      const long long elements = count<std::uint64_t>("the number of elements of a block");
+      for (long long i = 0; i < elements; ++i)
+        add_cell<std::uint64_t>(cell, whole<std::uint64_t>("an element's number"));
+    }
+  }
+
+  // The cells of the highest dimension, with their vertices numbered anew.
+  Mesh mesh() const {
+    int dimension = 2;
+    for (const auto& [type, cells] : cells_) {
+      if (!cells.empty()) dimension = std::max(dimension, kind(type).dimension);
+    }
+    std::vector<const MshCell*> kinds;
+    std::vector<std::string> names;
+    for (const auto& [type, cells] : cells_) {
+      if (cells.empty() || kind(type).dimension != dimension) continue;
+      kinds.push_back(&kind(type));
+      names.push_back(kind(type).name);
+    }
+    if (kinds.empty()) throw InputError(path_ + ": holds no tetrahedra, hexahedra or triangles");
+    if (kinds.size() > 1) {
+      throw InputError(fmt::format("{}: holds more than one kind of cell: {}; mesh it with one kind", path_,
+                                   fmt::join(names, ", ")));
+    }
+    if (!kinds[0]->element) {
+      throw InputError(fmt::format("{}: cells of the kind '{}' are not supported; known are Tet4, Tet10, Hex8 and Tri3",
+                                   path_, names[0]));
+    }
+    const std::vector<long long>& tags = cells_.at(kinds[0]->type);
+    std::vector<long long> used = tags;
+    std::sort(used.begin(), used.end());
+    used.erase(std::unique(used.begin(), used.end()), used.end());
+    Mesh mesh;
+    mesh.element = *kinds[0]->element;
+    mesh.source = path_;
+    mesh.X.resize(3, static_cast<Eigen::Index>(used.size()));
+    for (size_t i = 0; i < used.size(); ++i) mesh.X.col(static_cast<Eigen::Index>(i)) = nodes_.at(used[i]);
+    for (const long long tag : tags) {
+      mesh.cells.push_back(static_cast<int>(std::lower_bound(used.begin(), used.end(), tag) - used.begin()));
+    }
+    if (mesh.element == Element::tet10) {
+      // Gmsh lists the nodes of edges (2, 3) and (1, 3) the other way round than VTK.
+      for (size_t c = 0; c < mesh.cells.size(); c += 10) std::swap(mesh.cells[c + 8], mesh.cells[c + 9]);
+    }
+    return mesh;
+  }
+
+  std::string_view rest_;
+  std::string path_;
+  int line_ = 1;
+  int version_ = 0;  // 2 or 4
+  bool binary_ = false;
+  std::unordered_map<long long, Eigen::Vector3d> nodes_;  // by tag
+  std::map<int, std::vector<long long>> cells_;           // node tags by type
+};
+
+}  // namespace
+
+Mesh read_mesh(const std::string& path) {
+  if (!path.ends_with(".msh")) {
+    throw InputError(path + ": unknown mesh format; a mesh is read from a .msh file of Gmsh");
+  }
+  const std::string data = whole_file(path);
+  return MshReader(data, path).read();
+}
+
+}  // namespace ergon

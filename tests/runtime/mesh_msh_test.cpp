@@ -1,0 +1,194 @@
+// Reading .msh files, written by hand and by Gmsh.
+
+#include <gmock/gmock.h>
+#include <gmsh.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+#include <random>
+
+#include "runtime/error.h"
+#include "runtime/mesh/mesh_build.h"
+#include "runtime/mesh/mesh_import.h"
+#include "runtime/mesh/mesh_tools.h"
+#include "tests/runtime/temporary_folder.h"
+
+namespace ergon {
+namespace {
+
+template <class Call>
+std::string message_of(Call call) {
+  try {
+    call();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+// A .msh file of version 2.2 with the eight corners of a box and the given elements.
+std::string msh(const std::vector<std::string>& elements, const std::string& extra_node = "") {
+  std::string text =
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" + std::to_string(extra_node.empty() ? 9 : 10) + "\n";
+  text += "1 7 7 7\n";  // of no element
+  const char* corners[] = {"0 0 0", "2 0 0", "2 1 0", "0 1 0", "0 0 1", "2 0 1", "2 1 1", "0 1 1"};
+  for (int i = 0; i < 8; ++i) text += std::to_string(10 * (i + 1)) + " " + corners[i] + "\n";
+  text += extra_node + "$EndNodes\n$Elements\n" + std::to_string(elements.size()) + "\n";
+  for (size_t i = 0; i < elements.size(); ++i) text += std::to_string(i + 1) + " " + elements[i] + "\n";
+  return text + "$EndElements\n";
+}
+
+TEST(mesh_msh, msh_cells_of_the_highest_dimension_are_read) {
+  const TemporaryFolder folder;
+  const Mesh hex = read_mesh(folder.file("hex.msh", msh({"2 2 0 1 10 20 30", "5 2 0 1 10 20 30 40 50 60 70 80"})));
+  EXPECT_EQ(hex.element, Element::hex8);
+  EXPECT_EQ(hex.vertices(), 8);
+  check_mesh(hex);
+  EXPECT_NEAR(rest_volumes(hex)[0], 2, 1e-15);
+  const Mesh tet = read_mesh(folder.file("tet.msh", msh({"4 2 0 1 10 20 40 50", "4 2 0 1 20 30 40 70"})));
+  EXPECT_EQ(tet.element, Element::tet4);
+  EXPECT_EQ(tet.vertices(), 6);
+  EXPECT_EQ(tet.cells, (std::vector<int>{0, 1, 3, 4, 1, 2, 3, 5}));
+  const Mesh triangles = read_mesh(folder.file("tri.msh", msh({"2 2 0 1 10 20 30"})));
+  EXPECT_EQ(triangles.element, Element::tri3);
+  EXPECT_EQ(triangles.cells, (std::vector<int>{0, 1, 2}));
+}
+
+TEST(mesh_msh, quadratic_tetrahedra_come_in_the_order_of_vtk) {
+  const TemporaryFolder folder;
+  // Corners, then the middles of edges 01, 12, 20, 30, 23, 13, as Gmsh orders them.
+  const std::string path = folder.file("ten.msh",
+                                       "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n10\n"
+                                       "1 0 0 0\n2 2 0 0\n3 0 2 0\n4 0 0 2\n5 1 0 0\n6 1 1 0\n7 0 1 0\n8 0 0 1\n"
+                                       "9 0 1 1\n10 1 0 1\n$EndNodes\n$Elements\n1\n"
+                                       "1 11 2 0 1 1 2 3 4 5 6 7 8 9 10\n$EndElements\n");
+  const Mesh mesh = read_mesh(path);
+  EXPECT_EQ(mesh.element, Element::tet10);
+  check_mesh(mesh);
+  Mesh corners = mesh;
+  corners.element = Element::tet4;
+  corners.cells.resize(4);
+  corners.X = mesh.X.leftCols(4).eval();
+  const Mesh expected = to_tet10(corners);
+  for (size_t i = 0; i < 10; ++i) EXPECT_EQ(mesh.X.col(mesh.cells[i]), expected.X.col(expected.cells[i])) << i;
+}
+
+TEST(mesh_msh, bad_msh_files_are_told) {
+  const TemporaryFolder folder;
+  const auto error_of = [&](const std::string& name, const std::string& content) {
+    const std::string path = folder.file(name, content);
+    const std::string message = message_of([&] { read_mesh(path); });
+    return message.starts_with(path) ? name + message.substr(path.size()) : message;
+  };
+  const std::string missing = folder.path("none.msh");
+  EXPECT_EQ(message_of([&] { read_mesh(missing); }), missing + ": cannot be opened: No such file or directory");
+  EXPECT_EQ(error_of("a.vtk", "x"), "a.vtk: unknown mesh format; a mesh is read from a .msh file of Gmsh");
+  EXPECT_EQ(error_of("a.msh", "Point(1) = {0, 0, 0};\n"),
+            "a.msh: is not a Gmsh mesh: it does not start with $MeshFormat");
+  EXPECT_EQ(error_of("a.msh", msh({"15 2 0 1 10"})), "a.msh: holds no tetrahedra, hexahedra or triangles");
+  EXPECT_EQ(error_of("a.msh", msh({"4 2 0 1 10 20 40 50", "5 2 0 1 10 20 30 40 50 60 70 80"})),
+            "a.msh: holds more than one kind of cell: Tetrahedron 4, Hexahedron 8; mesh it with one kind");
+  EXPECT_EQ(error_of("a.msh", msh({"6 2 0 1 10 20 30 50 60 70"})),
+            "a.msh: cells of the kind 'Prism 6' are not supported; known are Tet4, Tet10, Hex8 and Tri3");
+  EXPECT_EQ(error_of("a.msh", msh({"4 2 0 1 10 20 40 99"}, "99 0 nan 1\n")),
+            "a.msh:15: node 99 is (0, nan, 1); it must be finite");
+  EXPECT_EQ(error_of("a.msh", msh({"4 2 0 1 10 20 40 77"})), "a.msh:18: element 1 names node 77, which does not exist");
+  EXPECT_EQ(error_of("a.msh", msh({"140 2 0 1 10"})), "a.msh:18: unknown type of element: 140");
+  EXPECT_EQ(error_of("a.msh", msh({"4 2 0 1 10 20 40 50"}, "80 0 0 1\n")), "a.msh:15: node 80 is defined twice");
+  EXPECT_EQ(error_of("a.msh", msh({"4 2 0 1 10 20 40 5x"})),
+            "a.msh:18: a node of an element is '5x', which is not a whole number");
+  EXPECT_EQ(error_of("a.msh", "$MeshFormat\n4 0 8\n$EndMeshFormat\n"),
+            "a.msh:2: format 4 is not supported; save the mesh in format 4.1 or 2.2");
+  EXPECT_EQ(error_of("a.msh", ""), "a.msh: is not a Gmsh mesh: it does not start with $MeshFormat");
+  const std::string whole = msh({"4 2 0 1 10 20 40 50"});
+  for (size_t length = 60; length + 14 < whole.size(); length += 17) {
+    EXPECT_NE(error_of("cut.msh", whole.substr(0, length)), "no error") << length;
+  }
+}
+
+// A ball of radius 1 meshed by Gmsh and saved in a format of its own.
+std::string saved_by_gmsh(const TemporaryFolder& folder, const std::string& name, double version, bool binary,
+                          int order, bool parametric) {
+  const std::string path = folder.path(name);
+  gmsh::initialize(0, nullptr, false);
+  gmsh::option::setNumber("General.Terminal", 0);
+  gmsh::option::setNumber("Mesh.MshFileVersion", version);
+  gmsh::option::setNumber("Mesh.Binary", binary);
+  gmsh::option::setNumber("Mesh.SaveParametric", parametric);
+  gmsh::option::setNumber("Mesh.SaveAll", 1);
+  gmsh::option::setNumber("Mesh.MeshSizeMax", 0.5);
+  gmsh::model::add("ball");
+  gmsh::model::occ::addSphere(0, 0, 0, 1);
+  gmsh::model::occ::synchronize();
+  gmsh::model::addPhysicalGroup(3, {1}, 7);
+  gmsh::model::setPhysicalName(3, 7, "the ball");
+  gmsh::model::mesh::generate(3);
+  gmsh::model::mesh::setOrder(order);
+  gmsh::write(path);
+  gmsh::finalize();
+  return path;
+}
+
+TEST(mesh_msh, every_format_of_gmsh_gives_the_same_mesh) {
+  const TemporaryFolder folder;
+  for (const int order : {1, 2}) {
+    const Mesh reference = read_mesh(saved_by_gmsh(folder, "reference.msh", 2.2, false, order, false));
+    check_mesh(reference);
+    EXPECT_EQ(reference.element, order == 1 ? Element::tet4 : Element::tet10);
+    const auto volumes = rest_volumes(reference);
+    EXPECT_NEAR(std::accumulate(volumes.begin(), volumes.end(), 0.0), 4.18879, order == 1 ? 0.6 : 0.02);
+    for (const double version : {2.2, 4.1}) {
+      for (const bool binary : {false, true}) {
+        for (const bool parametric : {false, true}) {
+          if (parametric && version < 4) continue;
+          const Mesh mesh = read_mesh(saved_by_gmsh(folder, "ball.msh", version, binary, order, parametric));
+          EXPECT_EQ(mesh.cells, reference.cells) << version << binary << parametric;
+          EXPECT_LT((mesh.X - reference.X).cwiseAbs().maxCoeff(), 1e-15) << version << binary << parametric;
+        }
+      }
+    }
+  }
+}
+
+TEST(mesh_msh, parametric_nodes_of_format_2_are_refused) {
+  const TemporaryFolder folder;
+  const std::string path = saved_by_gmsh(folder, "ball.msh", 2.2, false, 1, true);
+  EXPECT_EQ(message_of([&] { read_mesh(path); }),
+            path + ":8: parametric nodes are read in format 4.1 only; save the mesh in that format");
+}
+
+TEST(mesh_msh, damaged_files_give_an_error_or_a_sound_mesh) {
+  const TemporaryFolder folder;
+  std::vector<std::string> wholes{msh({"4 2 0 1 10 20 40 50", "4 2 0 1 20 30 40 70"})};
+  for (const bool binary : {false, true}) {
+    for (const double version : {2.2, 4.1}) {
+      saved_by_gmsh(folder, "ball.msh", version, binary, 1, false);
+      wholes.push_back(folder.content("ball.msh"));
+    }
+  }
+  std::mt19937 generator(2);
+  int errors = 0, meshes = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    std::string content = wholes[static_cast<size_t>(trial) % wholes.size()];
+    for (unsigned changes = generator() % 4; changes > 0; --changes) {
+      content[60 + generator() % (content.size() - 60)] =
+          static_cast<char>(generator() % 2 ? generator() : '0' + generator() % 10);
+    }
+    if (generator() % 4 == 0) content.resize(generator() % content.size());
+    const std::string path = folder.file("damaged.msh", content);
+    try {
+      const Mesh mesh = read_mesh(path);
+      ++meshes;
+      ASSERT_TRUE(mesh.X.allFinite());
+      for (const int v : mesh.cells) ASSERT_TRUE(v >= 0 && v < mesh.vertices());
+    } catch (const InputError&) {
+      ++errors;
+    }
+  }
+  EXPECT_GT(errors, 100);
+  EXPECT_GT(meshes, 50);
+}
+
+}  // namespace
+}  // namespace ergon
