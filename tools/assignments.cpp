@@ -20,7 +20,7 @@ std::vector<std::string> split(const std::string& text) {
 }
 
 double checked(const Symbol& symbol, const std::string& text) {
-  const Quantity q =
+  const WrittenNumber q =
       read_quantity(toml::value<std::string>(text), symbol.name, "a number, with or without a unit", "--set");
   if (q.unit && *q.unit != symbol.unit) {
     throw InputError(fmt::format("--set: '{}' must be in {}, found '{}', which is in {}", symbol.name,

@@ -15,6 +15,7 @@ enum ExitCode { exit_done = 0, exit_failed = 1, exit_bad_input = 2 };
 // Writes its answer to `out` and returns an exit code. Throws SourceError and InputError for bad input.
 using Run = std::function<int(std::ostream& out)>;
 
+void add_run_command(CLI::App& app, Run& run);
 void add_check_command(CLI::App& app, Run& run);
 void add_show_command(CLI::App& app, Run& run);
 void add_eval_command(CLI::App& app, Run& run);

@@ -1,10 +1,14 @@
 // ergon bench: how fast kernels, the compiler and scenes are here.
 
 #include <memory>
+#include <optional>
 #include <ostream>
+#include <stdexcept>
 
 #include "tools/bench.h"
+#include "tools/choices.h"
 #include "tools/command.h"
+#include "tools/scene_run.h"
 
 namespace ergon {
 namespace {
@@ -49,6 +53,26 @@ void add_compile(CLI::App& bench, Run& run) {
   });
 }
 
+void add_scene(CLI::App& bench, Run& run) {
+  CLI::App* command = bench.add_subcommand("scene", "A whole scene: time by part, iterations, memory; writes nothing");
+  auto options = std::make_shared<SceneRun>();
+  auto threads = std::make_shared<std::optional<int>>();
+  auto json = std::make_shared<bool>(false);
+  command->add_option("scene", options->file, "a scene file (.toml)")->required();
+  command->add_option("--threads", *threads, "threads to use; default: all cores");
+  command->add_flag("--json", *json, "one JSON object instead of text");
+  options->write = false;
+  command->callback([options, threads, json, &run] {
+    run = [options, threads, json](std::ostream& out) {
+      if (threads->has_value()) set_threads(**threads);
+      const RunSummary summary = run_scene_file(*options);
+      out << (*json ? to_json(summary) + "\n" : to_text(summary)) << std::flush;
+      if (!summary.failure.empty()) throw std::runtime_error(options->file + ": " + summary.failure);
+      return exit_done;
+    };
+  });
+}
+
 }  // namespace
 
 void add_bench_command(CLI::App& app, Run& run) {
@@ -56,6 +80,7 @@ void add_bench_command(CLI::App& app, Run& run) {
   command->require_subcommand(1);
   add_kernels(*command, run);
   add_compile(*command, run);
+  add_scene(*command, run);
 }
 
 }  // namespace ergon

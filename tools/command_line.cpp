@@ -68,6 +68,7 @@ int run_command_line(std::vector<std::string> arguments, std::ostream& out, std:
   app.set_version_flag("--version", "ergon " ERGON_VERSION);
   app.require_subcommand(1);
   Run run;
+  add_run_command(app, run);
   add_check_command(app, run);
   add_show_command(app, run);
   add_compile_command(app, run);

@@ -1,0 +1,91 @@
+#include "tools/scene_run.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <ostream>
+
+#include "runtime/lanes/lanes.h"
+#include "runtime/output/progress.h"
+#include "scenes/scene_reader.h"
+#include "tools/installation.h"
+
+namespace ergon {
+namespace {
+
+volatile std::sig_atomic_t interrupted = 0;
+
+// While it lives, the first interrupt asks the run to end after the step it is at; a second one ends the process.
+class InterruptGuard {
+ public:
+  InterruptGuard() {
+    interrupted = 0;
+    struct sigaction action {};
+    action.sa_handler = [](int) { interrupted = 1; };
+    action.sa_flags = static_cast<int>(SA_RESETHAND);
+    sigaction(SIGINT, &action, &old_int_);
+    sigaction(SIGTERM, &action, &old_term_);
+  }
+  ~InterruptGuard() {
+    sigaction(SIGINT, &old_int_, nullptr);
+    sigaction(SIGTERM, &old_term_, nullptr);
+  }
+  InterruptGuard(const InterruptGuard&) = delete;
+  InterruptGuard& operator=(const InterruptGuard&) = delete;
+
+ private:
+  struct sigaction old_int_ {};
+  struct sigaction old_term_ {};
+};
+
+std::string start_line(const Scene& scene, const BuiltScene& built) {
+  int cells = 0;
+  for (const Body& body : built.bodies) cells += body.mesh.cell_count();
+  return fmt::format("{}: {} vertices, {} cells, {} steps of {:g} s; ready in {:.2f} s\n", scene.file,
+                     built.system->vertices(), cells, built.steps, built.step.dt, built.seconds.total());
+}
+
+}  // namespace
+
+std::string folder_of(const SceneRun& options, const Scene& scene) {
+  if (!options.write) return "";
+  return options.folder.empty() ? output_folder(scene) : options.folder;
+}
+
+RunSummary run_scene_file(const SceneRun& options) {
+  const Scene scene = read_scene(options.file);
+  const Catalogue catalogue(Catalogue::default_folders());
+  BuiltScene built = build_scene(scene, catalogue, [](const Energy& energy, const std::string& case_name) {
+    return load_kernel(energy, case_name, lanes::best_lanes());
+  });
+  RunOptions run;
+  run.folder = folder_of(options, scene);
+  InterruptGuard guard;
+  run.stop = [] { return interrupted != 0; };
+  if (options.progress == nullptr) return run_scene(scene, built, run);
+
+  *options.progress << start_line(scene, built) << std::flush;
+  Progress progress(*options.progress, isatty(STDOUT_FILENO) != 0, static_cast<int>(built.steps));
+  run.progress = [&progress](const StepRecord& record, long) {
+    progress.update(static_cast<int>(record.step), record.time,
+                    fmt::format("{} Newton{}", record.newton_iterations,
+                                record.contacts == 0 ? "" : fmt::format(", {} contacts", record.contacts)));
+  };
+  const RunSummary summary = run_scene(scene, built, run);
+  progress.finish();
+  return summary;
+}
+
+std::string to_text(const RunSummary& summary) {
+  std::string text = fmt::format("{} steps to {:g} s, {} Newton iterations, {} linear solves, {:.1f} MB\n",
+                                 summary.steps, summary.time, summary.newton_iterations, summary.linear_solves,
+                                 static_cast<double>(summary.peak_memory) / 1e6);
+  text += "seconds:";
+  for (const auto& [part, seconds] : seconds_by_part(summary)) text += fmt::format("  {} {:.3f}", part, seconds);
+  text += '\n';
+  for (const std::string& part : summary.skipped) text += fmt::format("skipped  {}\n", part);
+  return text;
+}
+
+}  // namespace ergon

@@ -1,0 +1,29 @@
+#pragma once
+// What `ergon run` and `ergon bench scene` share: from a scene file to the summary of its run.
+
+#include <functional>
+#include <iosfwd>
+#include <string>
+
+#include "scenes/run.h"
+
+namespace ergon {
+
+struct SceneRun {
+  std::string file;
+  std::string folder;                // ""; as the scene says
+  bool write = true;                 // false: no frames, no report
+  std::ostream* progress = nullptr;  // null: none
+};
+
+// Throws SourceError, InputError and OutputError. Ends early, with `stopped` in the summary, when the process is
+// interrupted (SIGINT, SIGTERM).
+RunSummary run_scene_file(const SceneRun& options);
+
+// The folder that results go to.
+std::string folder_of(const SceneRun& options, const Scene& scene);
+
+// Lines that tell a person what a run did and where its time went.
+std::string to_text(const RunSummary& summary);
+
+}  // namespace ergon
