@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <fstream>
-#include <sstream>
 
 namespace ergon {
 
@@ -57,10 +56,11 @@ std::optional<Shape> shape_of_F(std::string_view geometry) {
 Energy read_energy(const std::string& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw SourceError({file, 0, 0}, "cannot open the energy file");
-  std::ostringstream text;
-  text << stream.rdbuf();
-  if (stream.bad() || text.fail()) throw SourceError({file, 0, 0}, "cannot read the energy file");
-  return parse_energy(text.str(), file);
+  std::string text;
+  for (char block[4096]; stream.read(block, sizeof block), stream.gcount() > 0;)
+    text.append(block, static_cast<size_t>(stream.gcount()));
+  if (stream.bad()) throw SourceError({file, 0, 0}, "cannot read the energy file");
+  return parse_energy(text, file);
 }
 
 }  // namespace ergon

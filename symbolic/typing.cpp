@@ -81,9 +81,12 @@ class Typing {
   }
 
   static Quantity number(const Expression& e) {
+    const std::string mantissa = e.text.substr(0, e.text.find_first_of("eE"));
+    const bool zero = mantissa.find_first_of("123456789") == std::string::npos;
     const double value = std::strtod(e.text.c_str(), nullptr);
     if (!std::isfinite(value)) throw SourceError(e.place, fmt::format("the number {} is too large", e.text));
-    return {{}, {}, e.text.find_first_of("123456789") == std::string::npos};
+    if (value == 0 && !zero) throw SourceError(e.place, fmt::format("the number {} is too small", e.text));
+    return {{}, {}, zero};
   }
 
   Quantity sum(const Expression& e) const {

@@ -36,6 +36,20 @@ TEST(BadEnergies, MissingFileNamesIt) {
   }
 }
 
+TEST(BadEnergies, EmptyFilesAndFoldersAreNoEnergies) {
+  auto message = [](const std::string& file) -> std::string {
+    try {
+      read_energy(file);
+    } catch (const SourceError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(message("/dev/null"),
+            "/dev/null: expected `density NAME GEOMETRY` or `energy NAME STENCIL`, found an empty file");
+  EXPECT_EQ(message("/"), "/: cannot read the energy file");
+}
+
 // Whatever is cut off or changed in a sound file, the answer is an energy or an error with a place.
 TEST(BadEnergies, CutAndChangedFilesAreReadOrRefused) {
   int refused = 0, read = 0;

@@ -2,6 +2,7 @@
 
 #include "symbolic/energy.h"
 #include "symbolic/expression_parser.h"
+#include "symbolic/functions.h"
 #include "symbolic/print.h"
 #include "symbolic/statements.h"
 #include "tests/symbolic/energy_files.h"
@@ -197,6 +198,17 @@ TEST(EnergyFiles, WindowsLineEndsChangeNothing) {
     std::string windows;
     for (const char c : text) windows += c == '\n' ? std::string("\r\n") : std::string(1, c);
     EXPECT_EQ(formula_text(parse_energy(windows, "w")), formula_text(parse_energy(text, "u"))) << file;
+  }
+}
+
+TEST(Language, EveryFunctionAndStencilIsInItsReference) {
+  const std::string page = test::contents(ERGON_SOURCE_DIR "/symbolic/README.md");
+  for (const std::string& name : function_names())
+    EXPECT_TRUE(page.find("`" + name + "`") != std::string::npos || page.find("`" + name + "(") != std::string::npos)
+        << name;
+  for (const std::string& name : stencil_names()) {
+    const std::string line = "`" + name + "` " + std::to_string(points_of_stencil(name));
+    EXPECT_NE(page.find(line), std::string::npos) << line;
   }
 }
 
