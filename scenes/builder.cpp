@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <set>
 
 #include "runtime/error.h"
 #include "runtime/mesh/mesh_tools.h"
+#include "runtime/solver/stopwatch.h"
 #include "scenes/laws.h"
 #include "scenes/start_check.h"
 
@@ -17,19 +17,6 @@ namespace ergon {
 namespace {
 
 Eigen::Vector3d vector(const Vector3& v) { return {v[0], v[1], v[2]}; }
-
-// Adds the time since the last mark to a part.
-class Stopwatch {
- public:
-  void mark(double& part) {
-    const auto now = std::chrono::steady_clock::now();
-    part += std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 // One law of one object, checked.
 struct UsedLaw {
@@ -130,8 +117,17 @@ Potential object_potential(const UsedLaw& law, const Kernel& kernel, const Body&
                                 point_masses(*law.energy, mass, first, count));
 }
 
-void add_world(const Scene& scene, const WorldLaws& world, Kernels& kernels, const Eigen::Matrix3Xd& X,
-               BuiltScene& out) {
+void add_object(const SceneObject& object, const std::vector<UsedLaw>& laws, const Body& body, Kernels& kernels,
+                BuiltScene& out) {
+  for (size_t i = 0; i < laws.size(); ++i) try {
+      out.system->add(object_potential(laws[i], kernels.get(*laws[i].energy), body, out.start.x, out.mass));
+    } catch (const InputError& bad) {
+      throw SourceError(object.energies[i].place, fmt::format("object '{}': {}", object.name, bad.what()));
+    }
+}
+
+void add_world(const Scene& scene, const WorldLaws& world, Kernels& kernels, BuiltScene& out) {
+  const Eigen::Matrix3Xd& X = out.start.x;
   const int n = out.system->vertices();
   out.system->add(Potential::on_stencils("inertia", kernels.get(*world.inertia), points_of(0, n), X, {},
                                          point_masses(*world.inertia, out.mass, 0, n)));
@@ -198,43 +194,38 @@ void lay_out(const Scene& scene, BuiltScene& out) {
 
 BuiltScene build_scene(const Scene& scene, const Catalogue& catalogue, const KernelSource& kernel_source) {
   BuiltScene out;
-  Stopwatch watch;
   const std::string folder = std::filesystem::path(scene.file).parent_path().string();
-
   Laws laws(catalogue, folder);
-  std::vector<std::vector<UsedLaw>> used;
-  for (const SceneObject& object : scene.objects) used.push_back(object_laws(object, laws));
-  const WorldLaws world = world_laws(scene, laws, out.skipped);
-  watch.mark(out.seconds.energies);
-
-  for (const SceneObject& object : scene.objects) out.bodies.push_back(load_body(object, folder));
-  watch.mark(out.seconds.meshes);
-
-  lay_out(scene, out);
-  check_start(scene, out.bodies);
-  watch.mark(out.seconds.setup);
-
   Kernels kernels(kernel_source);
-  for (const auto& object : used)
-    for (const UsedLaw& law : object) kernels.get(*law.energy);
-  for (const Energy* law : {world.inertia, world.gravity, world.barrier, world.friction})
-    if (law != nullptr) kernels.get(*law);
-  watch.mark(out.seconds.kernels);
-
-  const Eigen::Matrix3Xd& X = out.start.x;
-  for (size_t i = 0; i < scene.objects.size(); ++i)
-    for (size_t j = 0; j < used[i].size(); ++j) try {
-        out.system->add(object_potential(used[i][j], kernels.get(*used[i][j].energy), out.bodies[i], X, out.mass));
-      } catch (const InputError& bad) {
-        throw SourceError(scene.objects[i].energies[j].place,
-                          fmt::format("object '{}': {}", scene.objects[i].name, bad.what()));
-      }
-  add_world(scene, world, kernels, X, out);
+  std::vector<std::vector<UsedLaw>> used;
+  WorldLaws world;
+  {
+    Stopwatch watch(out.seconds.energies);
+    for (const SceneObject& object : scene.objects) used.push_back(object_laws(object, laws));
+    world = world_laws(scene, laws, out.skipped);
+  }
+  {
+    Stopwatch watch(out.seconds.meshes);
+    for (const SceneObject& object : scene.objects) out.bodies.push_back(load_body(object, folder));
+    lay_out(scene, out);
+    check_start(scene, out.bodies);
+  }
+  {
+    Stopwatch watch(out.seconds.kernels);
+    for (const auto& object : used)
+      for (const UsedLaw& law : object) kernels.get(*law.energy);
+    for (const Energy* law : {world.inertia, world.gravity, world.barrier, world.friction})
+      if (law != nullptr) kernels.get(*law);
+  }
+  {
+    Stopwatch watch(out.seconds.setup);
+    for (size_t i = 0; i < used.size(); ++i) add_object(scene.objects[i], used[i], out.bodies[i], kernels, out);
+    add_world(scene, world, kernels, out);
+  }
   out.step = step_options(scene);
   // An end that is a multiple of dt up to rounding takes no step more.
   out.steps = scene.time.steps ? *scene.time.steps
                                : std::max(1L, static_cast<long>(std::ceil(*scene.time.end / scene.time.dt - 1e-6)));
-  watch.mark(out.seconds.setup);
   return out;
 }
 

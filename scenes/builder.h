@@ -24,9 +24,9 @@ using KernelSource = std::function<Kernel(const Energy& energy, const std::strin
 
 struct BuildSeconds {
   double energies = 0;  // read and checked
-  double meshes = 0;    // read, filled, reordered
+  double meshes = 0;    // read, filled, reordered, laid out
   double kernels = 0;   // compiled or loaded
-  double setup = 0;     // masses, potentials, contact
+  double setup = 0;     // potentials, contact
   double total() const { return energies + meshes + kernels + setup; }
 };
 

@@ -34,7 +34,8 @@ std::vector<std::string> Catalogue::default_folders() {
   const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
   for (const char* place : {"energies", "../energies", "../share/ergon/energies"}) {
     fs::path folder = fs::weakly_canonical(program / place, error);
-    if (fs::is_directory(folder, error)) out.push_back(folder.string());
+    if (!fs::is_directory(folder, error)) continue;
+    if (std::find(out.begin(), out.end(), folder.string()) == out.end()) out.push_back(folder.string());
   }
   return out;
 }

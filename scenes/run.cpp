@@ -1,0 +1,156 @@
+#include "scenes/run.h"
+
+#include <fmt/format.h>
+#include <omp.h>
+#include <sys/resource.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "runtime/error.h"
+#include "runtime/output/atomic_file.h"
+#include "runtime/output/report.h"
+#include "runtime/solver/stopwatch.h"
+#include "scenes/frames.h"
+
+namespace ergon {
+namespace fs = std::filesystem;
+namespace {
+
+std::string name_of_scene(const Scene& scene) { return fs::path(scene.file).stem().string(); }
+
+ReportRecord report_of(const StepRecord& record) {
+  ReportRecord out;
+  out.step = static_cast<int>(record.step);
+  out.time = record.time;
+  out.dt = record.dt;
+  out.converged = record.converged;
+  out.newton_iterations = record.newton_iterations;
+  out.residual = record.residual;
+  out.energies = record.energy.stored;
+  out.energies.emplace_back("kinetic", record.energy.kinetic);
+  out.energies.emplace_back("total", record.energy.total);
+  out.times = seconds_by_part(record.seconds);
+  for (const std::string& text : record.skipped) {
+    const size_t colon = text.find(": ");
+    const bool split = colon != std::string::npos;
+    out.skipped.push_back({text.substr(0, colon), split ? text.substr(colon + 2) : ""});
+  }
+  if (std::isfinite(record.smallest_gap)) out.smallest_gap = record.smallest_gap;
+  out.contacts = record.contacts;
+  out.more = {{"step_speed", record.step_speed},
+              {"factorisations", static_cast<double>(record.factorisations)},
+              {"halvings", static_cast<double>(record.halvings)},
+              {"shifts", static_cast<double>(record.shifts)},
+              {"indefinite", static_cast<double>(record.indefinite)},
+              {"friction_iterations", static_cast<double>(record.friction_iterations)},
+              {"friction_change", record.friction_change},
+              {"barrier_stiffness", record.barrier_stiffness},
+              {"energy_added", record.energy_added}};
+  return out;
+}
+
+// The files of a run; without a folder, none.
+class Output {
+ public:
+  Output(const Scene& scene, const BuiltScene& built, const std::string& folder) : built_(&built), folder_(folder) {
+    if (folder.empty()) return;
+    prepare_output(folder);
+    fs::remove(fs::path(folder) / "summary.json");
+    report_ = std::make_unique<Report>((fs::path(folder) / "report.jsonl").string());
+    if (scene.output.frames)
+      frames_ = std::make_unique<FrameWriter>(folder, name_of_scene(scene), scene.output.frame_interval);
+  }
+
+  void state(const State& state, bool last = false) {
+    if (frames_ != nullptr && frames_->last_step() != state.step && (last || frames_->due(state)))
+      frames_->write(built_->bodies, state);
+  }
+  void step(const StepRecord& record) {
+    if (report_ != nullptr) report_->append(report_of(record));
+  }
+  void summary(const RunSummary& summary) {
+    if (!folder_.empty()) write_file((fs::path(folder_) / "summary.json").string(), to_json(summary) + "\n");
+  }
+  int frames() const { return frames_ == nullptr ? 0 : frames_->frames(); }
+
+ private:
+  const BuiltScene* built_;
+  std::string folder_;
+  std::unique_ptr<Report> report_;
+  std::unique_ptr<FrameWriter> frames_;
+};
+
+RunSummary summary_of_start(const Scene& scene, const BuiltScene& built, double start_energy) {
+  RunSummary out;
+  out.scene = scene.file;
+  out.threads = omp_get_max_threads();
+  out.vertices = built.system->vertices();
+  for (const Body& body : built.bodies) out.cells += body.mesh.cell_count();
+  out.start_energy = out.end_energy = start_energy;
+  out.build = built.seconds;
+  out.skipped = built.skipped;
+  return out;
+}
+
+long peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_maxrss * 1024;  // ru_maxrss is in KiB
+}
+
+}  // namespace
+
+std::string output_folder(const Scene& scene) {
+  return scene.output.folder.empty() ? (fs::path("out") / name_of_scene(scene)).string() : scene.output.folder;
+}
+
+void prepare_output(const std::string& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw OutputError(fmt::format("{}: this output folder cannot be made: {}", folder, error.message()));
+  if (!fs::is_directory(folder)) throw OutputError(fmt::format("{}: the output folder is a file", folder));
+  AtomicFile trial((fs::path(folder) / "report.jsonl").string());  // throws; leaves nothing behind
+}
+
+RunSummary run_scene(const Scene& scene, BuiltScene& built, const RunOptions& options) {
+  double output_seconds = 0;
+  std::unique_ptr<Output> output;
+  State state = built.start;
+  {
+    Stopwatch watch(output_seconds);
+    output = std::make_unique<Output>(scene, built, options.folder);
+    output->state(state);
+  }
+  TimeStepper stepper(*built.system, built.mass, built.ground.get(), built.step);
+  RunSummary summary = summary_of_start(scene, built, stepper.energies(state).total);
+  while (state.step < built.steps && summary.failure.empty()) {
+    if (options.stop && options.stop()) {
+      summary.stopped = true;
+      break;
+    }
+    const StepRecord record = stepper.step(state);
+    add_step(summary, record);
+    if (!record.accepted)
+      summary.failure =
+          fmt::format("step {} (to {:.6g} s) failed: {}", state.step + 1, state.time + built.step.dt, record.reason);
+    {
+      Stopwatch watch(output_seconds);
+      output->step(record);
+      output->state(state);
+    }
+    if (options.progress) options.progress(record, built.steps);
+  }
+  {
+    Stopwatch watch(output_seconds);
+    output->state(state, true);
+  }
+  summary.frames = output->frames();
+  summary.largest_speed = std::sqrt(state.v.colwise().squaredNorm().maxCoeff());
+  summary.peak_memory = peak_memory();
+  summary.output_seconds = output_seconds;
+  output->summary(summary);
+  return summary;
+}
+
+}  // namespace ergon

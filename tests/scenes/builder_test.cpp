@@ -1,0 +1,129 @@
+#include "scenes/builder.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "runtime/mesh/mesh_tools.h"
+#include "tests/scenes/real_kernels.h"
+
+namespace ergon {
+namespace {
+
+const std::string time_part = "[time]\ndt = 0.01\nsteps = 2\n";
+const std::string block = R"(
+[[object]]
+name = "block"
+box = { size = [0.1, 0.2, 0.3], cells = [2, 2, 2] }
+translate = [0, 0, 0.1]
+density = 1000
+velocity = [1, 0, 0]
+energy = [{ law = "stable_neo_hookean", E = "0.5 MPa", nu = 0.4 }]
+)";
+
+// The laws whose kernels a scene asks for.
+std::vector<std::string> kernels_of(const std::string& text) {
+  std::vector<std::string> asked;
+  build_scene(read_scene_text(text, "a.toml"), shipped_energies(), [&](const Energy& energy, const std::string& c) {
+    asked.push_back(energy.name);
+    return real_kernel(energy, c);
+  });
+  return asked;
+}
+
+TEST(builder, asks_only_for_the_kernels_that_are_used_and_says_what_is_left_out) {
+  using testing::ElementsAre;
+  EXPECT_THAT(kernels_of(time_part + block), ElementsAre("stable_neo_hookean", "inertia", "gravity"));
+  EXPECT_THAT(kernels_of("gravity = [0, 0, 0]\n" + time_part + block), ElementsAre("stable_neo_hookean", "inertia"));
+  EXPECT_THAT(kernels_of(time_part + block + "[[ground]]\n"),
+              ElementsAre("stable_neo_hookean", "inertia", "gravity", "ground_barrier"));
+  EXPECT_THAT(kernels_of(time_part + block + "[[ground]]\n[[ground]]\nmu = 0.1\nheight = -1\n"),
+              ElementsAre("stable_neo_hookean", "inertia", "gravity", "ground_barrier", "ground_friction"));
+
+  EXPECT_THAT(build_text("gravity = [0, 0, 0]\n" + time_part + block).skipped,
+              ElementsAre("gravity: it is zero in this scene, no kernel loaded",
+                          "ground_barrier, ground_friction: there is no ground, no kernels loaded"));
+  EXPECT_THAT(build_text(time_part + block + "[[ground]]\n").skipped,
+              ElementsAre("ground_friction: no ground has a coefficient of friction 'mu', no kernel loaded"));
+}
+
+TEST(builder, lays_out_masses_velocities_and_fixed_vertices) {
+  BuiltScene built = build_text(time_part + block + "fixed = [{ max = [inf, inf, 0.1001] }]\n" +
+                                "[[object]]\nname = \"other\"\nbox = { size = [1, 1, 1], cells = [1, 1, 1] }\n"
+                                "density = 7\nenergy = [{ law = \"stable_neo_hookean\", E = 1, nu = 0 }]\n");
+  ASSERT_EQ(built.bodies.size(), 2u);
+  EXPECT_EQ(built.bodies[1].first_vertex, 27);
+  EXPECT_EQ(built.system->vertices(), 35);
+  EXPECT_EQ(built.system->free_vertices(), 35 - 9);
+  EXPECT_NEAR(built.mass.head(27).sum(), 6, 1e-12);
+  EXPECT_NEAR(built.mass.tail(8).sum(), 7, 1e-12);
+  for (int v = 0; v < 27; ++v) {
+    const bool fixed = built.start.x(2, v) < 0.1001;
+    EXPECT_EQ(built.system->block_of(v) < 0, fixed);
+    EXPECT_EQ(built.start.v(0, v), fixed ? 0 : 1);
+  }
+  EXPECT_EQ(built.start.v.rightCols(8).norm(), 0);
+  EXPECT_EQ(built.bodies[0].mesh.X.rows(), 3);
+}
+
+TEST(builder, moves_an_object_by_scale_then_rotation_then_translation) {
+  BuiltScene built = build_text(time_part + R"(
+[[object]]
+name = "block"
+box = { size = [0.1, 0.2, 0.3], cells = [1, 1, 1] }
+scale = 2
+rotate = ["90 deg", "90 deg", 0]
+translate = [1, 2, 3]
+density = 1000
+energy = [{ law = "stable_neo_hookean", E = "0.5 MPa", nu = 0.4 }]
+)");
+  // (x, y, z) becomes (x, -z, y) about x, and that (y, -z, -x) about y.
+  const auto bounds = bounding_box(built.bodies[0].mesh);
+  EXPECT_LT((bounds.col(0) - Eigen::Vector3d(1, 2 - 0.6, 3 - 0.2)).norm(), 1e-14);
+  EXPECT_LT((bounds.col(1) - Eigen::Vector3d(1 + 0.4, 2, 3)).norm(), 1e-14);
+}
+
+TEST(builder, keeps_the_order_of_the_mesh_beside_the_order_of_computing) {
+  const BuiltScene built = build_text(time_part + block);
+  const Body& body = built.bodies[0];
+  ASSERT_EQ(body.vertex_from.size(), 27u);
+  for (size_t i = 0; i < 27; ++i)
+    EXPECT_EQ(body.ordered.X.col(static_cast<int>(i)), body.mesh.X.col(body.vertex_from[i]));
+  EXPECT_EQ(body.surface.size(), 26u);  // all but the one in the middle
+}
+
+TEST(builder, carries_elements_and_edge_and_point_energies) {
+  for (const char* element : {"tet10", "hex8"}) {
+    BuiltScene built = build_text(time_part + block + "element = \"" + element + "\"\n");
+    EXPECT_EQ(built.bodies[0].ordered.element, element_named(element));
+    EXPECT_EQ(built.system->potential(0).stencil_count(), built.bodies[0].ordered.cell_count());
+  }
+  BuiltScene springs = build_text(time_part + R"(
+[[object]]
+name = "net"
+box = { size = [1, 1, 1], cells = [1, 1, 1] }
+element = "hex8"
+density = 1
+energy = [{ law = "spring", k = "1 N/cm" }, { law = "gravity", g = [0, "-1.6 m/s^2", 0] }]
+)");
+  EXPECT_EQ(springs.system->potential(0).stencil_count(), 12);
+  EXPECT_EQ(springs.system->potential(1).stencil_count(), 8);
+  State stretched = springs.start;
+  stretched.x *= 1.01;
+  TimeStepper stepper(*springs.system, springs.mass, nullptr, springs.step);
+  const Energies energies = stepper.energies(stretched);
+  ASSERT_EQ(energies.stored[0].first, "spring");
+  EXPECT_NEAR(energies.stored[0].second, 12 * 0.5 * 100 * 1e-4, 1e-12);
+}
+
+TEST(builder, counts_steps) {
+  auto steps = [](const std::string& time) { return build_text("[time]\n" + time + block).steps; };
+  EXPECT_EQ(steps("dt = 0.1\nend = 0.3\n"), 3);
+  EXPECT_EQ(steps("dt = 0.1\nend = 0.31\n"), 4);
+  EXPECT_EQ(steps("dt = 0.1\nend = 0.01\n"), 1);
+  EXPECT_EQ(steps("dt = 0.1\nsteps = 7\n"), 7);
+}
+
+}  // namespace
+}  // namespace ergon
