@@ -13,7 +13,7 @@ Energy find_energy(const std::string& name_or_path) {
   if (name_or_path.ends_with(".energy") || std::filesystem::is_regular_file(name_or_path, error)) {
     return read_energy(name_or_path);
   }
-  return read_energy(Catalogue(Catalogue::default_folders()).file_of(name_or_path, "", Place{"ergon"}));
+  return read_energy(Catalogue(Catalogue::default_folders()).file_of(name_or_path, "", Place{name_or_path}));
 }
 
 std::vector<std::string> catalogue_names() { return Catalogue(Catalogue::default_folders()).names(); }
