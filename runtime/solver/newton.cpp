@@ -12,6 +12,7 @@ namespace {
 
 constexpr double largest_gap_change = 0.1;  // of the last Newton step, as a fraction of each active gap
 constexpr double model_error = 0.05;        // of the change of energy that a Newton step predicts
+constexpr double same_factor_margin = 0.5;  // of the tolerance, for a step solved with the factor of the one before
 constexpr double near_limit = 1e3;          // tolerances: a step below this may be the last but one
 constexpr double rounding_gradients = 4;    // a gradient of so many times its rounding counts as zero
 constexpr double first_shift = 1e-8;        // of the mean diagonal
@@ -58,15 +59,13 @@ double mean_diagonal(const BlockMatrix& matrix) {
 
 NewtonResult Newton::minimise(System& system, Eigen::Matrix3Xd& x, const NewtonOptions& options, Contact* contact) {
   NewtonResult result;
-  NewtonSeconds& seconds = result.seconds;
-  LineSearchResult trial;
-
   evaluate_value(system, x, contact, result);
   if (const std::string outside = unusable(result.evaluation); !outside.empty()) {
     result.reason = "the state at the start is outside " + outside;
     return result;
   }
-  if (certainly_converged(system, x, options, result)) return result;
+  evaluate_gradient(system, x, result);
+  if (certainly_converged(system, options, result)) return result;
 
   while (true) {
     if (result.iterations == options.max_iterations) {
@@ -77,66 +76,104 @@ NewtonResult Newton::minimise(System& system, Eigen::Matrix3Xd& x, const NewtonO
       return result;
     }
 
-    {
-      const Stopwatch watch(seconds.evaluate);
-      result.evaluation = system.hessian(x, options.projection, gradient_, matrix_);
-      result.indefinite += result.evaluation.indefinite;
-    }
-    result.residual = largest_free_component(system, gradient_).value;
+    evaluate_hessian(system, x, options, result);
     const double slope = find_direction(system, result);
     if (!result.reason.empty()) return result;
     result.step_speed = largest_free_component(system, direction_).value / options.dt;
     if (result.iterations == 0) result.first_step_speed = result.step_speed;
 
-    double fraction = 1;
-    bool gaps_settled = true;
-    if (contact) {
-      const Stopwatch watch(seconds.contact);
-      fraction = contact->largest_step(x, direction_);
-      gaps_settled = contact->gap_change(x, direction_) <= largest_gap_change;
-    }
-    const bool is_near = result.step_speed <= near_limit * options.tolerance;
-    const bool is_last = result.step_speed <= options.tolerance && gaps_settled;
-
-    const LineSearchInput input{.x = x,
-                                .direction = direction_,
-                                .at_x = result.evaluation,
-                                .gradient = gradient_,
-                                .slope = slope,
-                                .first_fraction = fraction,
-                                .sufficient_decrease = options.sufficient_decrease,
-                                .max_halvings = options.max_halvings,
-                                .near_limit = is_near};
-    {
-      const double contact_before = seconds.contact;
-      {
-        const Stopwatch watch(seconds.line_search);
-        line_search(system, contact, input, trial, seconds.contact);
-      }
-      seconds.line_search -= seconds.contact - contact_before;
-    }
-    result.halvings += trial.halvings;
-    if (!trial.found) {
-      give_up_line_search(system, x, contact, trial, is_last, result);
-      return result;
-    }
-
-    result.smallest_fraction = std::min(result.smallest_fraction, trial.fraction);
+    const Progress progress = take_step(system, x, slope, options, contact, result);
+    if (!progress.found) return result;
     ++result.iterations;
-    const double change = trial.evaluation.value - result.evaluation.value;
-    const bool is_quadratic = trial.fraction == 1 && std::abs(change - slope / 2) <= model_error * std::abs(slope);
-    x.swap(trial.x);
-    result.evaluation = trial.evaluation;
     if (contact && contact->adapt(x)) {
       evaluate_value(system, x, contact, result);
-    } else if (is_last) {
+      continue;
+    }
+    if (progress.is_last) {
       evaluate_gradient(system, x, result);
       result.converged = true;
       return result;
-    } else if ((is_near || is_quadratic) && certainly_converged(system, x, options, result)) {
-      return result;
+    }
+    if (progress.is_near || progress.is_quadratic) {
+      evaluate_gradient(system, x, result);
+      if (certainly_converged(system, options, result)) return result;
+      if (progress.is_quadratic && finishes_with_same_factor(system, x, options, contact, result)) return result;
     }
   }
+}
+
+// Moves x along direction_ as far as contact and energy let it.
+Newton::Progress Newton::take_step(System& system, Eigen::Matrix3Xd& x, double slope, const NewtonOptions& options,
+                                   Contact* contact, NewtonResult& result) {
+  Progress progress;
+  double fraction = 1;
+  bool gaps_settled = true;
+  if (contact) {
+    const Stopwatch watch(result.seconds.contact);
+    fraction = contact->largest_step(x, direction_);
+    gaps_settled = contact->gap_change(x, direction_) <= largest_gap_change;
+  }
+  progress.is_near = result.step_speed <= near_limit * options.tolerance;
+  progress.is_last = result.step_speed <= options.tolerance && gaps_settled;
+
+  const LineSearchInput input{.x = x,
+                              .direction = direction_,
+                              .at_x = result.evaluation,
+                              .gradient = gradient_,
+                              .slope = slope,
+                              .first_fraction = fraction,
+                              .sufficient_decrease = options.sufficient_decrease,
+                              .max_halvings = options.max_halvings,
+                              .near_limit = progress.is_near};
+  const double contact_before = result.seconds.contact;
+  {
+    const Stopwatch watch(result.seconds.line_search);
+    line_search(system, contact, input, trial_, result.seconds.contact);
+  }
+  result.seconds.line_search -= result.seconds.contact - contact_before;
+  result.halvings += trial_.halvings;
+  progress.found = trial_.found;
+  if (!trial_.found) {
+    give_up_line_search(system, x, contact, progress.is_last, result);
+    return progress;
+  }
+  const double change = trial_.evaluation.value - result.evaluation.value;
+  progress.is_quadratic = trial_.fraction == 1 && std::abs(change - slope / 2) <= model_error * std::abs(slope);
+  result.smallest_fraction = std::min(result.smallest_fraction, trial_.fraction);
+  x.swap(trial_.x);
+  result.evaluation = trial_.evaluation;
+  return progress;
+}
+
+// Where the last step came out as its quadratic model foretold, the factor that it was solved with gives the next step
+// nearly as a new one would: well enough to tell that it is the last, and to take it.
+bool Newton::finishes_with_same_factor(System& system, Eigen::Matrix3Xd& x, const NewtonOptions& options,
+                                       Contact* contact, NewtonResult& result) {
+  const std::optional<double> slope = solve_direction(system, result);
+  if (!slope) return false;
+  const double speed = largest_free_component(system, direction_).value / options.dt;
+  if (speed > same_factor_margin * options.tolerance) return false;
+  if (contact) {
+    const Stopwatch watch(result.seconds.contact);
+    if (contact->gap_change(x, direction_) > largest_gap_change) return false;
+  }
+  result.step_speed = speed;
+  result.converged = take_step(system, x, *slope, options, contact, result).found || result.at_rounding;
+  if (!result.converged) {
+    result.reason.clear();  // a new Hessian may do better
+    return false;
+  }
+  ++result.reused_factors;
+  evaluate_gradient(system, x, result);
+  return true;
+}
+
+void Newton::evaluate_hessian(System& system, const Eigen::Matrix3Xd& x, const NewtonOptions& options,
+                              NewtonResult& result) {
+  const Stopwatch watch(result.seconds.evaluate);
+  result.evaluation = system.hessian(x, options.projection, gradient_, matrix_);
+  result.indefinite += result.evaluation.indefinite;
+  result.residual = largest_free_component(system, gradient_).value;
 }
 
 void Newton::evaluate_value(System& system, const Eigen::Matrix3Xd& x, Contact* contact, NewtonResult& result) {
@@ -155,10 +192,8 @@ void Newton::evaluate_gradient(System& system, const Eigen::Matrix3Xd& x, Newton
 }
 
 // The gradient alone may show that the next step is below the tolerance.
-bool Newton::certainly_converged(System& system, const Eigen::Matrix3Xd& x, const NewtonOptions& options,
-                                 NewtonResult& result) {
+bool Newton::certainly_converged(const System& system, const NewtonOptions& options, NewtonResult& result) const {
   if (options.curvature.size() == 0 || options.projection == Projection::none) return false;
-  evaluate_gradient(system, x, result);
   const double bound = step_bound(system, gradient_, options.curvature) / options.dt;
   if (!(bound <= options.tolerance)) return false;
   result.step_speed = bound;
@@ -166,54 +201,56 @@ bool Newton::certainly_converged(System& system, const Eigen::Matrix3Xd& x, cons
   return true;
 }
 
-// Solves H p = -g; where H has no factor or p does not descend, with a diagonal that grows. Returns g . p.
-double Newton::find_direction(System& system, NewtonResult& result) {
-  Eigen::VectorXd right_side(matrix_.rows()), step;
+// Solves H p = -g with the present factor; g . p, or nothing where p does not descend.
+std::optional<double> Newton::solve_direction(System& system, NewtonResult& result) {
+  const Stopwatch watch(result.seconds.solve);
+  right_side_.resize(matrix_.rows());
   for (int v = 0; v < system.vertices(); ++v) {
-    if (const int block = system.block_of(v); block >= 0) right_side.segment<3>(3 * block) = -gradient_.col(v);
+    if (const int block = system.block_of(v); block >= 0) right_side_.segment<3>(3 * block) = -gradient_.col(v);
   }
+  solver_.solve(right_side_, step_);
+  const double slope = -right_side_.dot(step_);
+  if (!step_.allFinite() || slope > 0) return std::nullopt;
+  direction_.setZero(3, system.vertices());
+  for (int v = 0; v < system.vertices(); ++v) {
+    if (const int block = system.block_of(v); block >= 0) direction_.col(v) = step_.segment<3>(3 * block);
+  }
+  return slope;
+}
+
+// Factors H and solves; where H has no factor or the step does not descend, with a diagonal that grows. Returns g . p.
+double Newton::find_direction(System& system, NewtonResult& result) {
   std::optional<int> failed;
-  double shift = 0;
-  for (int attempt = 0; attempt <= max_shifts; ++attempt) {
+  double shift = 0, tried = 0;
+  for (int attempt = 0; attempt <= max_shifts && std::isfinite(shift); ++attempt) {
     {
       const Stopwatch watch(result.seconds.factor);
       failed = solver_.factor(matrix_, shift);
       ++result.factorisations;
     }
     if (!failed) {
-      const Stopwatch watch(result.seconds.solve);
-      solver_.solve(right_side, step);
-      const double slope = -right_side.dot(step);
-      if (step.allFinite() && slope <= 0) {
-        direction_.setZero(3, system.vertices());
-        for (int v = 0; v < system.vertices(); ++v) {
-          if (const int block = system.block_of(v); block >= 0) direction_.col(v) = step.segment<3>(3 * block);
-        }
-        return slope;
-      }
+      if (const std::optional<double> slope = solve_direction(system, result)) return *slope;
     }
     ++result.shifts;
+    tried = shift;
     shift = shift == 0 ? first_shift * mean_diagonal(matrix_) : shift_growth * shift;
-    if (!(shift > 0) || !std::isfinite(shift)) break;
+    if (shift == 0) break;
   }
-  int vertex = -1;
+  result.reason = "the Hessian is not finite or gives no direction of descent";
   for (int v = 0; v < system.vertices() && failed; ++v) {
-    if (system.block_of(v) == *failed / 3) vertex = v;
+    if (system.block_of(v) != *failed / 3) continue;
+    result.reason = fmt::format(
+        "the Hessian has no positive pivot at vertex {}, even with {:.3g} N/m added to its diagonal", v, tried);
   }
-  result.reason = failed ? fmt::format(
-                               "the Hessian has no positive pivot at vertex {}, even with {:.3g} N/m added to its "
-                               "diagonal",
-                               vertex, shift / shift_growth)
-                         : std::string("the Hessian is not finite or gives no direction of descent");
   return 0;
 }
 
 // The line search found no better state: at the limit of rounding that is the end, anywhere else a failure.
-void Newton::give_up_line_search(System& system, const Eigen::Matrix3Xd& x, Contact* contact,
-                                 const LineSearchResult& trial, bool is_last, NewtonResult& result) {
+void Newton::give_up_line_search(System& system, const Eigen::Matrix3Xd& x, Contact* contact, bool is_last,
+                                 NewtonResult& result) {
   if (contact) contact->set_active(x);
   const Largest worst = largest_free_component(system, direction_);
-  if (trial.at_rounding) {
+  if (trial_.at_rounding) {
     const Rounding rounding = measure_rounding(system, x, result.evaluation, gradient_);
     result.at_rounding = is_last || result.residual <= rounding_gradients * rounding.gradient;
     result.converged = result.at_rounding;
@@ -221,7 +258,7 @@ void Newton::give_up_line_search(System& system, const Eigen::Matrix3Xd& x, Cont
   }
   result.reason = fmt::format(
       "no state along the Newton step is accepted after {} halvings, for {}; the step is {:.3g} m/s at vertex {}",
-      trial.halvings, trial.rejected_by, result.step_speed, worst.vertex);
+      trial_.halvings, trial_.rejected_by, result.step_speed, worst.vertex);
 }
 
 }  // namespace ergon

@@ -5,6 +5,7 @@
 // Source: Li et al. 2020, Incremental Potential Contact, TOG 39(4), barrier-aware projected Newton.
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 
 #include "runtime/contact/contact.h"
@@ -49,6 +50,7 @@ struct NewtonResult {
   int halvings = 0;
   int shifts = 0;  // factorisations repeated with a larger diagonal
   int factorisations = 0;
+  int reused_factors = 0;    // last steps solved with the factor of the step before: not among the iterations
   long indefinite = 0;       // Hessians changed by projection, summed over iterations
   bool at_rounding = false;  // stopped where rounding, not the tolerance, ends the progress
   Evaluation evaluation;     // at x
@@ -67,18 +69,32 @@ class Newton {
   const BlockMatrix& matrix() const { return matrix_; }
 
  private:
+  struct Progress {
+    bool found = false;         // x has moved
+    bool is_near = false;       // the step was within a factor of the tolerance
+    bool is_last = false;       // the step was below the tolerance
+    bool is_quadratic = false;  // the energy fell by what the quadratic model foretold
+  };
   void evaluate_value(System& system, const Eigen::Matrix3Xd& x, Contact* contact, NewtonResult& result);
   void evaluate_gradient(System& system, const Eigen::Matrix3Xd& x, NewtonResult& result);
-  bool certainly_converged(System& system, const Eigen::Matrix3Xd& x, const NewtonOptions& options,
-                           NewtonResult& result);
+  void evaluate_hessian(System& system, const Eigen::Matrix3Xd& x, const NewtonOptions& options, NewtonResult& result);
   double find_direction(System& system, NewtonResult& result);
-  void give_up_line_search(System& system, const Eigen::Matrix3Xd& x, Contact* contact, const LineSearchResult& trial,
-                           bool is_last, NewtonResult& result);
+  std::optional<double> solve_direction(System& system, NewtonResult& result);
+  Progress take_step(System& system, Eigen::Matrix3Xd& x, double slope, const NewtonOptions& options, Contact* contact,
+                     NewtonResult& result);
+  bool certainly_converged(const System& system, const NewtonOptions& options, NewtonResult& result) const;
+  bool finishes_with_same_factor(System& system, Eigen::Matrix3Xd& x, const NewtonOptions& options, Contact* contact,
+                                 NewtonResult& result);
+  void give_up_line_search(System& system, const Eigen::Matrix3Xd& x, Contact* contact, bool is_last,
+                           NewtonResult& result);
 
   LinearSolver solver_;
   BlockMatrix matrix_;  // kept, with its pattern, from call to call
   Eigen::Matrix3Xd gradient_;
   Eigen::Matrix3Xd direction_;
+  Eigen::VectorXd right_side_;
+  Eigen::VectorXd step_;
+  LineSearchResult trial_;
 };
 
 }  // namespace ergon

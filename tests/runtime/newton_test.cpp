@@ -145,6 +145,24 @@ TEST(Newton, StopsAtRounding) {
   EXPECT_LT(result.iterations, 100);
 }
 
+// Near its limit the last step is solved with the factor of the one before, and is as good as the tolerance asks.
+TEST(Newton, LastStepReusesTheFactor) {
+  Chain chain;
+  chain.add_weight(1, Vector3d(9.81, 0, 0));
+  Matrix3Xd x = chain.X;
+  x(1, 1) = 1e-4;
+  Newton newton;
+  NewtonOptions options;
+  options.tolerance = 1e-7;
+  const NewtonResult result = newton.minimise(chain.system, x, options);
+  ASSERT_TRUE(result.converged) << result.reason;
+  EXPECT_EQ(result.reused_factors, 1);
+  EXPECT_EQ(result.factorisations, result.iterations);
+  EXPECT_LE(result.step_speed, options.tolerance / 2);
+  EXPECT_NEAR(x(0, 2), 2 + 3 * 9.81 / 100, options.tolerance);
+  EXPECT_NEAR(x(1, 1), 0, options.tolerance);
+}
+
 TEST(Newton, AnalysesOnceForAllIterations) {
   Chain chain;
   chain.add_weight(1, Vector3d(0, -9.81, 0));
