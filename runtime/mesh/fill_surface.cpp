@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <gmsh.h>
+#include <omp.h>
 
 #include <algorithm>
 #include <cmath>
@@ -35,6 +36,7 @@ class GmshSession {
       gmsh::finalize();
     } catch (...) {  // nothing is left to be done with it
     }
+    omp_set_num_threads(threads_);
   }
   GmshSession(const GmshSession&) = delete;
   GmshSession& operator=(const GmshSession&) = delete;
@@ -66,6 +68,7 @@ class GmshSession {
   }
 
  private:
+  int threads_ = omp_get_max_threads();  // Gmsh sets it for the whole process
   std::unique_lock<std::mutex> lock_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <omp.h>
 
 #include <numbers>
 
@@ -115,6 +116,21 @@ energy = [{ law = "spring", k = "1 N/cm" }, { law = "gravity", g = [0, "-1.6 m/s
   const Energies energies = stepper.energies(stretched);
   ASSERT_EQ(energies.stored[0].first, "spring");
   EXPECT_NEAR(energies.stored[0].second, 12 * 0.5 * 100 * 1e-4, 1e-12);
+}
+
+TEST(builder, leaves_the_number_of_threads_as_it_is) {
+  const int before = omp_get_max_threads();
+  omp_set_num_threads(3);
+  build_text(time_part + R"(
+[[object]]
+name = "filled"
+mesh = "parts/tet.obj"
+density = 1000
+energy = [{ law = "stable_neo_hookean", E = "0.5 MPa", nu = 0.4 }]
+)",
+             ERGON_SOURCE_DIR "/tests/errors/scenes/a.toml");
+  EXPECT_EQ(omp_get_max_threads(), 3);
+  omp_set_num_threads(before);
 }
 
 TEST(builder, counts_steps) {
