@@ -32,9 +32,8 @@ ReportRecord report_of(const StepRecord& record) {
   out.energies.emplace_back("total", record.energy.total);
   out.times = seconds_by_part(record.seconds);
   for (const std::string& text : record.skipped) {
-    const size_t colon = text.find(": ");
-    const bool split = colon != std::string::npos;
-    out.skipped.push_back({text.substr(0, colon), split ? text.substr(colon + 2) : ""});
+    auto [part, reason] = part_and_reason(text);
+    out.skipped.push_back({part, reason});
   }
   if (std::isfinite(record.smallest_gap)) out.smallest_gap = record.smallest_gap;
   out.contacts = record.contacts;
@@ -89,7 +88,7 @@ RunSummary summary_of_start(const Scene& scene, const BuiltScene& built, double 
   for (const Body& body : built.bodies) out.cells += body.mesh.cell_count();
   out.start_energy = out.end_energy = start_energy;
   out.build = built.seconds;
-  out.skipped = built.skipped;
+  for (const std::string& text : built.skipped) out.skipped.emplace_back(text, 0);
   return out;
 }
 

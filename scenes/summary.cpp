@@ -5,6 +5,11 @@
 
 namespace ergon {
 
+std::pair<std::string, std::string> part_and_reason(const std::string& skipped) {
+  const size_t colon = skipped.find(": ");
+  return {skipped.substr(0, colon), colon == std::string::npos ? "" : skipped.substr(colon + 2)};
+}
+
 void add_step(RunSummary& summary, const StepRecord& record) {
   if (record.accepted) {
     summary.steps = record.step;
@@ -26,9 +31,12 @@ void add_step(RunSummary& summary, const StepRecord& record) {
   sum.line_search += record.seconds.line_search;
   sum.contact += record.seconds.contact;
   sum.total += record.seconds.total;
-  for (const std::string& part : record.skipped)
-    if (std::find(summary.skipped.begin(), summary.skipped.end(), part) == summary.skipped.end())
-      summary.skipped.push_back(part);
+  for (const std::string& part : record.skipped) {
+    auto same =
+        std::find_if(summary.skipped.begin(), summary.skipped.end(), [&](const auto& s) { return s.first == part; });
+    if (same == summary.skipped.end()) same = summary.skipped.insert(same, {part, 0});
+    ++same->second;
+  }
 }
 
 std::vector<std::pair<std::string, double>> seconds_by_part(const StepSeconds& s) {
@@ -73,7 +81,11 @@ std::string to_json(const RunSummary& s) {
   json["frames"] = s.frames;
   json["peak_memory"] = s.peak_memory;
   for (const auto& [part, seconds] : seconds_by_part(s)) json["seconds"][part] = seconds;
-  json["skipped"] = s.skipped;
+  json["skipped"] = nlohmann::ordered_json::array();
+  for (const auto& [text, steps] : s.skipped) {
+    auto [part, reason] = part_and_reason(text);
+    json["skipped"].push_back({{"part", part}, {"reason", reason}, {"steps", steps}});
+  }
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 

@@ -36,10 +36,14 @@ struct RunSummary {
   BuildSeconds build;
   StepSeconds step_seconds;  // sums
   double output_seconds = 0;
-  std::vector<std::string> skipped;  // all that was left out in any step, "part: reason"
+  // What was left out, "part: reason", with the number of steps in which it was; 0 for what the scene never needed.
+  std::vector<std::pair<std::string, long>> skipped;
 
   double total_seconds() const { return build.total() + step_seconds.total + output_seconds; }
 };
+
+// "part: reason" as its two parts.
+std::pair<std::string, std::string> part_and_reason(const std::string& skipped);
 
 // Takes a step into account.
 void add_step(RunSummary& summary, const StepRecord& record);

@@ -55,12 +55,13 @@ std::string folder_of(const SceneRun& options, const Scene& scene) {
 
 RunSummary run_scene_file(const SceneRun& options) {
   const Scene scene = read_scene(options.file);
+  RunOptions run;
+  run.folder = folder_of(options, scene);
+  if (!run.folder.empty()) prepare_output(run.folder);
   const Catalogue catalogue(Catalogue::default_folders());
   BuiltScene built = build_scene(scene, catalogue, [](const Energy& energy, const std::string& case_name) {
     return load_kernel(energy, case_name, lanes::best_lanes());
   });
-  RunOptions run;
-  run.folder = folder_of(options, scene);
   InterruptGuard guard;
   run.stop = [] { return interrupted != 0; };
   if (options.progress == nullptr) return run_scene(scene, built, run);
@@ -84,7 +85,9 @@ std::string to_text(const RunSummary& summary) {
   text += "seconds:";
   for (const auto& [part, seconds] : seconds_by_part(summary)) text += fmt::format("  {} {:.3f}", part, seconds);
   text += '\n';
-  for (const std::string& part : summary.skipped) text += fmt::format("skipped  {}\n", part);
+  for (const auto& [part, steps] : summary.skipped)
+    text +=
+        fmt::format("skipped  {}{}\n", part, steps == 0 ? "" : fmt::format(" ({} of {} steps)", steps, summary.steps));
   return text;
 }
 

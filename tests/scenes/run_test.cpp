@@ -88,6 +88,7 @@ TEST_F(run, takes_all_steps_and_writes_frames_report_and_summary) {
   EXPECT_TRUE(written["finished"]);
   EXPECT_EQ(written["newton_iterations"], newton);
   EXPECT_GT(written["seconds"]["total"], 0);
+  EXPECT_THAT(summary.skipped, testing::Contains(testing::Pair("inertia: Hessian is constant, assembled once", 30)));
 }
 
 TEST_F(run, writes_frames_at_the_interval_and_removes_those_of_an_earlier_run) {
