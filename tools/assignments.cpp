@@ -27,13 +27,16 @@ double checked(const Symbol& symbol, const std::string& text) {
                                  to_string(symbol.unit), text, to_string(*q.unit)));
   }
   if (!symbol.range.contains(q.value)) {
-    throw InputError(fmt::format("--set: '{}' must be in {} {}, found '{}'", symbol.name, to_string(symbol.range),
-                                 to_string(symbol.unit), text));
+    throw InputError(fmt::format("--set: '{}' must be in {}, found '{}'", symbol.name, range_in_unit(symbol), text));
   }
   return q.value;
 }
 
 }  // namespace
+
+std::string range_in_unit(const Symbol& symbol) {
+  return to_string(symbol.range) + (symbol.unit.dimensionless() ? "" : " " + to_string(symbol.unit));
+}
 
 std::map<std::string, std::vector<double>> read_assignments(const Energy& energy,
                                                             const std::vector<std::string>& texts) {

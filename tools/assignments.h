@@ -15,4 +15,7 @@ namespace ergon {
 std::map<std::string, std::vector<double>> read_assignments(const Energy& energy,
                                                             const std::vector<std::string>& texts);
 
+// "(0, inf) Pa", "(-1, 0.5)".
+std::string range_in_unit(const Symbol& symbol);
+
 }  // namespace ergon

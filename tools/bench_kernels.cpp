@@ -32,9 +32,11 @@ Values usable_values(const Energy& energy, const Kernel& kernel, Element element
       }
     }
     System system = make_system(energy, kernel, mesh, stencils, values);
+    const Evaluation at = system.value(x);
+    if (!(at.require > 0) || !std::isfinite(at.value)) continue;
     Eigen::Matrix3Xd gradient;
-    const Evaluation at = system.gradient(x, gradient);
-    if (at.require > 0 && std::isfinite(at.value) && gradient.allFinite()) return values;
+    system.gradient(x, gradient);
+    if (gradient.allFinite()) return values;
   }
   throw InputError(fmt::format("no inputs of {} were found at which it is defined; give some with --set", energy.name));
 }

@@ -63,14 +63,15 @@ int eval(const Options& options, std::ostream& out) {
   const bool density = energy.kind == Energy::Kind::density;
   const std::vector<int> stencils = density ? std::vector<int>() : active_stencils(energy, kernel, mesh, values, x);
   System system = make_system(energy, kernel, mesh, stencils, values);
+  const Evaluation state = system.value(x);
+  if (!(state.require > 0)) {
+    throw InputError(fmt::format("{}: a `require` condition of {} does not hold at these positions (margin {})",
+                                 options.positions.empty() ? options.mesh : options.positions, energy.name,
+                                 state.require));
+  }
   Eigen::Matrix3Xd gradient;
   BlockMatrix hessian;
   const Evaluation evaluation = system.hessian(x, projection, gradient, hessian);
-  if (!(evaluation.require > 0)) {
-    throw InputError(
-        fmt::format("{}: a `require` condition of {} does not hold at these positions (smallest margin {})",
-                    options.positions.empty() ? options.mesh : options.positions, energy.name, evaluation.require));
-  }
   if (!options.gradient_file.empty()) write_matrix_market(options.gradient_file, gradient);
   if (!options.hessian_file.empty()) write_matrix_market(options.hessian_file, hessian);
   Rows(out, options.json)

@@ -7,6 +7,7 @@
 
 #include "runtime/aligned.h"
 #include "runtime/error.h"
+#include "tools/assignments.h"
 #include "tools/sample.h"
 
 namespace ergon {
@@ -28,9 +29,9 @@ int point_at_rest(const Energy& energy, const Symbol& rest) {
 void check_given(const Energy& energy, const Values& values) {
   for (const Symbol* symbol : needed_inputs(energy)) {
     if (values.contains(symbol->name)) continue;
-    throw InputError(fmt::format("{} needs '{}': {}, in {} {}; give it with --set {}=VALUE", energy.name, symbol->name,
+    throw InputError(fmt::format("{} needs '{}': {}, in {}; give it with --set {}=VALUE", energy.name, symbol->name,
                                  symbol->help.empty() ? "a " + to_string(symbol->shape) : symbol->help,
-                                 to_string(symbol->range), to_string(symbol->unit), symbol->name));
+                                 range_in_unit(*symbol), symbol->name));
   }
 }
 

@@ -26,7 +26,7 @@ void Rows::add(const Row& row) {
   size_t column = 0;
   for (const auto& [name, value] : row.items()) {
     const std::string text = cell(value);
-    if (first) widths_.push_back(std::max({name.size(), text.size(), value.is_string() && column == 0 ? 24ul : 0ul}));
+    if (first) widths_.push_back(std::max({name.size(), text.size(), value.is_string() && column == 0 ? 24ul : 8ul}));
     const size_t width = widths_[column++];
     head += value.is_string() ? fmt::format("{:<{}}  ", name, width) : fmt::format("{:>{}}  ", name, width);
     line += value.is_string() ? fmt::format("{:<{}}  ", text, width) : fmt::format("{:>{}}  ", text, width);

@@ -1,0 +1,120 @@
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/tools/command.h"
+
+namespace ergon {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using testing::ElementsAre;
+
+class Bench : public CommandTest {
+ protected:
+  std::vector<Json> rows(const std::string& arguments) {
+    const Answer answer = ergon("bench " + arguments + " --json");
+    EXPECT_EQ(answer.code, 0) << answer.err;
+    std::vector<Json> all;
+    std::istringstream lines(answer.out);
+    for (std::string line; std::getline(lines, line);) all.push_back(Json::parse(line));
+    return all;
+  }
+  static std::vector<std::string> fields(const Json& row) {
+    std::vector<std::string> names;
+    for (const auto& item : row.items()) names.push_back(item.key());
+    return names;
+  }
+};
+
+TEST_F(Bench, KernelsGiveTheirFieldsForEachEntry) {
+  const std::vector<Json> all = rows("kernels --energy stable_neo_hookean --cells 3 --project abs");
+  ASSERT_EQ(all.size(), 3u);
+  for (const Json& row : all) {
+    EXPECT_THAT(fields(row), ElementsAre("energy", "element", "entry", "projection", "lanes", "precision", "threads",
+                                         "elements", "ns_per_element", "ns_per_point", "assembled", "operations"));
+    EXPECT_EQ(row["energy"], "stable_neo_hookean");
+    EXPECT_EQ(row["element"], "Tet4");
+    EXPECT_EQ(row["elements"], 6 * 27);
+    EXPECT_EQ(row["threads"], 1);
+    EXPECT_GT(row["ns_per_element"], 0);
+    EXPECT_EQ(row["ns_per_element"], row["ns_per_point"]);
+    EXPECT_GT(row["operations"], 0);
+  }
+  EXPECT_EQ(all[0]["entry"], "value");
+  EXPECT_EQ(all[1]["entry"], "gradient");
+  EXPECT_EQ(all[2]["entry"], "hessian");
+  EXPECT_EQ(all[1]["projection"], "none");
+  EXPECT_EQ(all[2]["projection"], "abs");
+}
+
+TEST_F(Bench, KernelsKnowElementsAndStencils) {
+  const std::vector<Json> hex = rows("kernels --energy neo_hookean --element hex8 --entry gradient --cells 2");
+  ASSERT_EQ(hex.size(), 1u);
+  EXPECT_EQ(hex[0]["element"], "Hex8");
+  EXPECT_EQ(hex[0]["elements"], 8);
+  EXPECT_NEAR(hex[0]["ns_per_element"].get<double>() / hex[0]["ns_per_point"].get<double>(), 8, 1e-9);
+  const std::vector<Json> edges = rows("kernels --energy spring --entry value --cells 1 --set k=3");
+  ASSERT_EQ(edges.size(), 1u);
+  EXPECT_EQ(edges[0]["element"], "edge");
+  EXPECT_EQ(edges[0]["elements"], 19);
+}
+
+TEST_F(Bench, KernelsNameWhatIsWrong) {
+  const Answer answer = ergon("bench kernels --energy neo_hookean --element tri3");
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_EQ(answer.err, "ergon: error: neo_hookean is a density of a solid; Tri3 elements have dimension 2, not 3\n");
+  EXPECT_EQ(ergon("bench kernels --entry hesian").err,
+            "ergon: error: --entry: 'hesian' is none of value, gradient, hessian; did you mean 'hessian'?\n");
+  EXPECT_EQ(ergon("bench kernels --energy spring --cells 0").err,
+            "ergon: error: 0 cells per edge; at least 1 is needed\n");
+}
+
+TEST_F(Bench, EveryEnergyOfTheCatalogueCanBeMeasured) {
+  const std::vector<Json> all = rows("kernels --entry hessian --cells 1");
+  std::set<std::string> energies;
+  for (const Json& row : all) energies.insert(row["energy"].get<std::string>());
+  size_t files = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(ERGON_SOURCE_DIR "/energies")) {
+    if (entry.path().extension() != ".energy") continue;
+    ++files;
+    const std::string name = entry.path().stem();
+    const auto found = energies.lower_bound(name);
+    EXPECT_TRUE(found != energies.end() && found->starts_with(name)) << name;
+  }
+  EXPECT_GT(files, 5u);
+}
+
+TEST_F(Bench, CompileTellsColdAndCached) {
+  const std::vector<Json> all = rows("compile --energy stable_neo_hookean");
+  ASSERT_EQ(all.size(), 2u);
+  for (const Json& row : all) {
+    EXPECT_THAT(fields(row), ElementsAre("energy", "element", "read_s", "differentiate_s", "emit_s", "compile_s",
+                                         "load_s", "total_s", "source_bytes", "cached"));
+    EXPECT_GT(row["source_bytes"], 1000);
+    EXPECT_GE(row["total_s"].get<double>(), row["compile_s"].get<double>());
+  }
+  EXPECT_EQ(all[0]["cached"], false);
+  EXPECT_EQ(all[1]["cached"], true);
+  EXPECT_GT(all[0]["compile_s"], 0);
+  EXPECT_EQ(all[1]["compile_s"], 0);
+}
+
+TEST_F(Bench, SceneTellsTimeByPartIterationsAndMemory) {
+  write("s.toml",
+        "[time]\ndt = 0.01\nsteps = 3\n[[object]]\nname = \"b\"\nbox = { size = [0.1, 0.1, 0.1], cells = [1, 1, 1] }\n"
+        "density = 1000\n[[object.energy]]\nlaw = \"stable_neo_hookean\"\nE = 1e5\nnu = 0.3\n");
+  const std::vector<Json> all = rows("scene s.toml");
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_EQ(all[0]["steps"], 3);
+  EXPECT_GT(all[0]["newton_iterations"], 0);
+  EXPECT_EQ(all[0]["linear_iterations"], 0);
+  EXPECT_GT(all[0]["peak_memory"], 1000000);
+  for (const char* part :
+       {"mesh", "kernels", "evaluate", "factor", "solve", "line_search", "contact", "output", "total"}) {
+    EXPECT_TRUE(all[0]["seconds"].contains(part)) << part;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "out"));
+}
+
+}  // namespace
+}  // namespace ergon

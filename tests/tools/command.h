@@ -1,0 +1,54 @@
+#pragma once
+// Runs commands of a shell as a user would, in a folder of the test's own.
+
+#include <sys/wait.h>
+
+#include <gtest/gtest.h>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+namespace ergon {
+
+struct Answer {
+  int code = -1;
+  std::string out;
+  std::string err;
+};
+
+class CommandTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    const testing::TestInfo* info = testing::UnitTest::GetInstance()->current_test_info();
+    folder = std::filesystem::path(testing::TempDir()) /
+             (std::string("ergon_") + info->test_suite_name() + "_" + info->name());
+    std::filesystem::remove_all(folder);
+    std::filesystem::create_directories(folder);
+    setenv("ERGON_CACHE", (folder / "cache").c_str(), 1);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder); }
+
+  std::string read(const std::string& name) const {
+    std::ostringstream text;
+    text << std::ifstream(folder / name).rdbuf();
+    return text.str();
+  }
+  void write(const std::string& name, const std::string& text) const {
+    std::filesystem::create_directories((folder / name).parent_path());
+    std::ofstream(folder / name) << text;
+  }
+
+  // With the folder as the working directory.
+  Answer shell(const std::string& command) const {
+    const std::string all = "cd '" + folder.string() + "' && { " + command + "\n} >stdout.txt 2>stderr.txt </dev/null";
+    const int status = std::system(all.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128, read("stdout.txt"), read("stderr.txt")};
+  }
+  Answer ergon(const std::string& arguments) const { return shell(ERGON_BINARY_DIR "/ergon " + arguments); }
+
+  std::filesystem::path folder;
+};
+
+}  // namespace ergon

@@ -1,0 +1,136 @@
+#include <gmock/gmock.h>
+
+#include "tests/tools/command.h"
+
+namespace ergon {
+namespace {
+
+using testing::HasSubstr;
+using testing::MatchesRegex;
+using testing::StartsWith;
+
+class CommandLine : public CommandTest {
+ protected:
+  void expect(const std::string& arguments, int code, const std::string& message) {
+    const Answer answer = ergon(arguments);
+    EXPECT_EQ(answer.code, code) << arguments;
+    EXPECT_EQ(answer.out, "") << arguments;
+    EXPECT_EQ(answer.err, message.empty() ? "" : "ergon: error: " + message + "\n") << arguments;
+  }
+};
+
+TEST_F(CommandLine, TellsItsVersionAndHelps) {
+  const Answer version = ergon("--version");
+  EXPECT_EQ(version.code, 0);
+  EXPECT_THAT(version.out, MatchesRegex("ergon [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+  const Answer help = ergon("--help");
+  EXPECT_EQ(help.code, 0);
+  for (const char* command : {"run", "check", "show", "compile", "eval", "bench"}) {
+    EXPECT_THAT(help.out, HasSubstr(std::string("\n  ") + command));
+    const Answer one = ergon(std::string(command) + " --help");
+    EXPECT_EQ(one.code, 0) << command;
+    EXPECT_THAT(one.out, HasSubstr("Usage: ergon " + std::string(command)));
+  }
+}
+
+TEST_F(CommandLine, NamesWhatWasMisspelt) {
+  expect("", 2, "'ergon' needs a command: run, check, show, compile, eval, bench");
+  expect("chek x", 2, "unknown command 'ergon chek'; did you mean 'check'?");
+  expect("bench kernel", 2, "unknown command 'ergon bench kernel'; did you mean 'kernels'?");
+  expect("bench", 2, "'ergon bench' needs a command: kernels, compile, scene");
+  expect("run --thread 2 x.toml", 2, "unknown option '--thread' of 'ergon run'; did you mean '--threads'?");
+  expect("check a.energy b.energy", 2, "'ergon check' does not expect 'b.energy'; see 'ergon check --help'");
+  expect("run", 2, "scene is required; see 'ergon run --help'");
+  expect("run x.toml --threads many", 2, "Could not convert: --threads = many; see 'ergon run --help'");
+  expect("run x.toml --threads 0", 2, "--threads: 0 is below 1");
+}
+
+TEST_F(CommandLine, NamesTheEnergyThatIsNotThere) {
+  expect("check nothing.energy", 2, "nothing.energy: cannot open the energy file");
+  const Answer answer = ergon("show stable_neohookean");
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_THAT(answer.err, testing::EndsWith("did you mean 'stable_neo_hookean'?\n"));
+}
+
+TEST_F(CommandLine, PointsIntoAnEnergyThatIsWrong) {
+  write("bad.energy", "density bad solid\nparam E Pa (0, inf)\nvalue E*tr(G)\n");
+  const Answer answer = ergon("check bad.energy");
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_THAT(answer.err, StartsWith("ergon: error: bad.energy:3:12: "));
+}
+
+TEST_F(CommandLine, AnUnsoundEnergyFails) {
+  write("stressed.energy",
+        "# Not free of stress at rest.\ndensity stressed solid\nparam mu Pa (0, inf)\nvalue mu*tr(F'*F)\n");
+  const Answer answer = ergon("check stressed.energy");
+  EXPECT_EQ(answer.code, 1);
+  EXPECT_EQ(answer.err, "");
+  EXPECT_THAT(answer.out, HasSubstr("\n  error "));
+  EXPECT_THAT(answer.out, HasSubstr("\nnot sound: "));
+  EXPECT_EQ(ergon("check stable_neo_hookean").code, 0);
+}
+
+TEST_F(CommandLine, ShowsFormulaSymbolsAndCost) {
+  const Answer answer = ergon("show stable_neo_hookean");
+  EXPECT_EQ(answer.code, 0);
+  EXPECT_THAT(answer.out, StartsWith("stable_neo_hookean: density of a solid, in Pa\n"));
+  EXPECT_THAT(answer.out, HasSubstr("value mu/2*(tr(F'*F) - 3) - mu*(det(F) - 1) + la/2*(det(F) - 1)^2"));
+  EXPECT_THAT(answer.out, HasSubstr("nu    param  scalar      1     (-1, 0.5)  Poisson's ratio"));
+  EXPECT_THAT(answer.out, HasSubstr("cost, operations per point of quadrature: value "));
+  EXPECT_THAT(ergon("show stable_neo_hookean --latex").out, HasSubstr("\\det"));
+  EXPECT_THAT(ergon("show stable_neo_hookean --source").out, HasSubstr("ergon_kernel"));
+  expect("show stable_neo_hookean --case face", 2, "--case: stable_neo_hookean has no cases");
+}
+
+TEST_F(CommandLine, ShowsTheSameSourceInTwoProcesses) {
+  const std::string source = ergon("show neo_hookean --source").out;
+  EXPECT_GT(source.size(), 1000u);
+  EXPECT_EQ(source, ergon("show neo_hookean --source").out);
+}
+
+TEST_F(CommandLine, CompilesOnceAndDumpsPasses) {
+  write("my.energy", "# A spring to the origin.\nenergy my point\ndof x m\nparam k N/m (0, inf)\nvalue k/2*norm2(x)\n");
+  const Answer first = ergon("compile my.energy");
+  EXPECT_EQ(first.code, 0) << first.err;
+  EXPECT_THAT(first.out, MatchesRegex("my: [148] lanes; operations: value [0-9]+, gradient [0-9]+, hessian [0-9]+ "
+                                      "\\([0-9]+ divisions\\); compiled in [0-9.]+ s\n"));
+  EXPECT_THAT(ergon("compile my.energy").out, HasSubstr("; cached, checked in "));
+  EXPECT_GT(ergon("compile my.energy --dump differentiate").out.size(), 20u);
+  expect("compile my.energy --dump diferentiate", 2,
+         "--dump: 'diferentiate' is none of lower, frontier, differentiate, structure, schedule, emit; did you mean "
+         "'differentiate'?");
+  expect("compile", 2, "'ergon compile' needs an energy, or --catalogue FOLDER");
+}
+
+TEST_F(CommandLine, TheCatalogueIsCompiledOnceForAllWidths) {
+  const Answer first = ergon("compile --catalogue kernels");
+  EXPECT_EQ(first.code, 0) << first.err;
+  EXPECT_THAT(first.out, MatchesRegex("kernels: [0-9]+ kernels compiled, 0 already there\n"));
+  const Answer second = ergon("compile --catalogue kernels");
+  EXPECT_THAT(second.out, MatchesRegex("kernels: 0 kernels compiled, [0-9]+ already there\n"));
+}
+
+TEST_F(CommandLine, TheProgramBringsTheCataloguesKernels) {
+  // No compiler, an empty cache: the kernels compiled with the program are found beside it.
+  const Answer answer = shell("PATH=/nowhere " ERGON_BINARY_DIR "/ergon compile stable_neo_hookean");
+  EXPECT_EQ(answer.code, 0) << answer.err;
+  EXPECT_THAT(answer.out, HasSubstr("; cached, checked in "));
+}
+
+TEST_F(CommandLine, AMissingCompilerIsNamedWithItsRemedy) {
+  write("my.energy", "# A spring to the origin.\nenergy my point\ndof x m\nparam k N/m (0, inf)\nvalue k/2*norm2(x)\n");
+  const Answer answer = shell("ERGON_CXX=/nowhere/g++ " ERGON_BINARY_DIR "/ergon compile my.energy");
+  EXPECT_EQ(answer.code, 1);
+  EXPECT_EQ(answer.err,
+            "ergon: error: no C++ compiler to make a kernel with: '/nowhere/g++': No such file or directory; install "
+            "one (Debian: apt-get install g++) or name one in the environment variable ERGON_CXX\n");
+}
+
+TEST_F(CommandLine, AStandardOutputThatIsFullFails) {
+  const Answer answer = shell(ERGON_BINARY_DIR "/ergon show stable_neo_hookean >/dev/full");
+  EXPECT_EQ(answer.code, 1);
+  EXPECT_EQ(answer.err, "ergon: error: the standard output could not be written\n");
+}
+
+}  // namespace
+}  // namespace ergon

@@ -1,0 +1,74 @@
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/tools/command.h"
+
+namespace ergon {
+namespace {
+
+using testing::EndsWith;
+using testing::HasSubstr;
+
+class RunCommand : public CommandTest {
+ protected:
+  void SetUp() override {
+    CommandTest::SetUp();
+    write("block.toml", scene(4));
+  }
+  static std::string scene(int steps) {
+    return "[time]\ndt = 0.01\nsteps = " + std::to_string(steps) +
+           "\n[[object]]\nname = \"b\"\nbox = { size = [0.1, 0.1, 0.1], cells = [1, 1, 1] }\ndensity = 1000\n"
+           "[[object.energy]]\nlaw = \"stable_neo_hookean\"\nE = 1e5\nnu = 0.3\n";
+  }
+};
+
+TEST_F(RunCommand, WritesFramesReportAndSummaryAndSaysWhere) {
+  const Answer answer = ergon("run block.toml --out results --threads 1");
+  EXPECT_EQ(answer.code, 0) << answer.err;
+  EXPECT_THAT(answer.out, HasSubstr("step 4/4"));
+  EXPECT_THAT(answer.out, HasSubstr("skipped  "));
+  EXPECT_THAT(answer.out, EndsWith("output: results\n"));
+  EXPECT_EQ(answer.out.find('\r'), std::string::npos);  // plain lines in a pipe
+  EXPECT_TRUE(std::filesystem::exists(folder / "results/block.pvd"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "results/block_frames/000004.vtu"));
+  std::istringstream lines(read("results/report.jsonl"));
+  int count = 0;
+  for (std::string line; std::getline(lines, line); ++count) {
+    EXPECT_EQ(nlohmann::json::parse(line)["step"], count + 1);
+  }
+  EXPECT_EQ(count, 4);
+}
+
+TEST_F(RunCommand, QuietSaysOnlyWhereTheOutputIs) {
+  const Answer answer = ergon("run block.toml --quiet");
+  EXPECT_EQ(answer.code, 0) << answer.err;
+  EXPECT_EQ(answer.out, "output: out/block\n");
+}
+
+TEST_F(RunCommand, BadScenesLeaveNothingBehind) {
+  EXPECT_EQ(ergon("run nothing.toml --out results").code, 2);
+  write("bad.toml", "[tim]\ndt = 0.01\n");
+  const Answer answer = ergon("run bad.toml --out results");
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_THAT(answer.err, testing::StartsWith("ergon: error: bad.toml:1:"));
+  EXPECT_THAT(answer.err, EndsWith("did you mean 'time'?\n"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "results"));
+}
+
+TEST_F(RunCommand, AFolderThatCannotBeMadeIsBadInput) {
+  write("taken", "a file\n");
+  const Answer answer = ergon("run block.toml --out taken");
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_THAT(answer.err, testing::StartsWith("ergon: error: taken: "));
+  EXPECT_EQ(read("taken"), "a file\n");
+}
+
+TEST_F(RunCommand, AnInterruptKeepsWhatWasDone) {
+  write("long.toml", scene(1000000));
+  const Answer answer = shell("timeout --signal=INT 1 " ERGON_BINARY_DIR "/ergon run long.toml --out results --quiet");
+  EXPECT_THAT(answer.err, testing::MatchesRegex("ergon: error: interrupted after step [0-9]+\n"));
+  EXPECT_EQ(nlohmann::json::parse(read("results/summary.json"))["finished"], false);
+}
+
+}  // namespace
+}  // namespace ergon
