@@ -43,23 +43,29 @@ inline Real laguerre_step(const Characteristic& f, Real r, Real side) {
   return (N * f.p * r) / (copysign(root, f.p) - side * f.p1 * r);
 }
 
-// Sets x[j] to eigenvalue j (0 is the lowest) in the lanes open[j], j < count, and to zero elsewhere. Of these
-// eigenvalues there are `negative` in a lane, none of them above zero; `bound` is below all. `zero` is the
-// characteristic of T at zero or, in lanes where mirror is -1 instead of 1, that of -T. Returns the lanes in which
-// something did not converge, which clusters cause.
+// Sets x[j] to eigenvalue j (0 is the lowest) in the lanes open[j], j < count, and to zero elsewhere. `negative` is the
+// number of eigenvalues below `limit` < 0, of which j is one; `bound` is below all. `at_limit` is the characteristic of
+// T at limit or, in lanes where mirror is -1 instead of 1, that of -T at -limit. Returns the lanes in which something
+// did not converge, which clusters cause.
 template <int N>
-inline unsigned lowest_eigenvalues(const Real* d, const Real* squares, Real bound, const Characteristic& zero,
-                                   Real mirror, Real negative, int count, unsigned* open, Real* x) {
-  Real low[N / 2] = {}, high[N / 2] = {};
+inline unsigned lowest_eigenvalues(const Real* d, const Real* squares, Real bound, Real limit,
+                                   const Characteristic& at_limit, Real mirror, Real negative, int count,
+                                   unsigned* open, Real* x) {
+  Real low[N / 2] = {}, high[N / 2] = {}, last[N / 2] = {};
   Characteristic start = characteristic<N>(d, squares, bound);
   for (int j = 0; j < count; ++j) {
     Mask chosen = from_bits(open[j]);
-    low[j] = select(chosen, bound + laguerre_step<N>(start, splat(j + 1), splat(1)), splat(0));
-    high[j] = select(chosen, -laguerre_step<N>(zero, max(negative - j, splat(1)), -mirror), splat(0));
-    x[j] = j == 0 ? low[j] : 0.5 * (low[j] + high[j]);
+    last[j] = laguerre_step<N>(start, splat(j + 1), splat(1));
+    low[j] = select(chosen, bound + last[j], splat(0));
+    high[j] = select(chosen, limit - laguerre_step<N>(at_limit, max(negative - j, splat(1)), -mirror), splat(0));
+    x[j] = low[j];
+    if (j > 0) {
+      x[j] = 0.5 * (low[j] + high[j]);
+      last[j] = splat(0);
+    }
   }
   unsigned any_open = 0;
-  for (int iteration = 0; iteration < 16; ++iteration) {
+  for (int iteration = 0; iteration < 20; ++iteration) {
     any_open = 0;
     for (int j = 0; j < count; ++j) {
       if (open[j] == 0) continue;
@@ -72,11 +78,15 @@ inline unsigned lowest_eigenvalues(const Real* d, const Real* squares, Real boun
       Real y = x[j] + side * step;
       low[j] = select(up, max(y, low[j]), low[j]);
       high[j] = select(up, high[j], min(y, high[j]));
-      Mask isolated = less(r, splat(1.5));
-      Real next = select(isolated, y, 0.5 * (low[j] + high[j]));
-      Mask active = from_bits(open[j]);
-      x[j] = select(active, next, x[j]);
-      Mask done = either(both(isolated, less_equal(step, splat(1e-6))), less(high[j] - low[j], splat(1e-15)));
+      // Near a simple eigenvalue the error after a step is about step * (step/last)^3. Steps that shrink slowly crawl
+      // along a cluster; the brackets' geometric mean leaves one around zero.
+      Mask simple = less(r, splat(1.5));
+      Mask done = both(simple, less_equal(step * step * step * step, 1e-15 * (last[j] * last[j] * last[j])));
+      done = either(done, less(high[j] - low[j], splat(1e-15)));
+      simple = both(simple, negate(both(less(splat(0), last[j]), less(0.3 * last[j], step))));
+      last[j] = select(simple, step, splat(0));
+      Real next = select(either(simple, done), y, -sqrt(low[j] * high[j]));
+      x[j] = select(from_bits(open[j]), next, x[j]);
       open[j] &= ~bits(done);
       any_open |= open[j];
     }

@@ -9,11 +9,11 @@
 namespace ergon::lanes {
 namespace {
 
-// On entry the tridiagonal matrix (diagonal d, e[i] between i and i + 1, norm about 1) and an orthogonal Q, column c at
-// z[c]. On return e is zero, d the eigenvalues in no order, z[c] = Q times the eigenvector of d[c].
+// On entry the tridiagonal matrix (diagonal d, e[i] between i and i + 1, with a bound of its norm) and an orthogonal Q,
+// column c at z[c]. On return e is zero, d the eigenvalues in no order, z[c] = Q times the eigenvector of d[c].
 template <int N>
-inline void ql_iterate(Real* d, Real* e, Real (*z)[N]) {
-  const Real negligible = splat(1.2e-16);
+inline void ql_iterate(Real* d, Real* e, Real norm, Real (*z)[N]) {
+  const Real negligible = 2.3e-16 * norm;
   for (int sweep = 0; sweep < 30 * N; ++sweep) {
     // The first entry that is not negligible, lane by lane, and the 2x2 matrix around it.
     Real d0 = splat(0), d1 = splat(0), e0 = splat(0);
@@ -37,16 +37,16 @@ inline void ql_iterate(Real* d, Real* e, Real (*z)[N]) {
 
     Real p = d[N - 1] - shift, c = splat(1), s = splat(0);
     for (int i = N - 2; i >= first; --i) {
+      // A lane that is done must not be turned by rotations that are one but for rounding.
+      const Mask coupled = less(splat(0), abs(e[i]));
       Real di = d[i] - shift;
       Real g = c * e[i];
       Real h = c * p;
-      Real squared = p * p + e[i] * e[i];
-      Mask regular = less(splat(1e-290), squared);
-      Real inverse = rsqrt(select(regular, squared, splat(1)));
-      Real next = s * (squared * inverse);
-      if (i < N - 2) e[i + 1] = select(regular, next, splat(0));
-      c = select(regular, p * inverse, splat(1));
-      s = select(regular, e[i] * inverse, splat(0));
+      Real squared = p * p + select(coupled, e[i] * e[i], splat(1));
+      Real inverse = rsqrt(squared);
+      if (i < N - 2) e[i + 1] = s * select(coupled, squared * inverse, p);
+      c = select(coupled, p * inverse, splat(1));
+      s = e[i] * inverse;
       p = c * di - s * g;
       d[i + 1] = shift + (h + s * (c * g + s * di));
       Real* low = z[i];

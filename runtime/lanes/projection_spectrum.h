@@ -6,6 +6,7 @@
 #include "runtime/lanes/projection_eigenvalues.h"
 #include "runtime/lanes/projection_eigenvectors.h"
 #include "runtime/lanes/projection_ql.h"
+#include "runtime/lanes/projection_small.h"
 #include "runtime/lanes/projection_tridiagonal.h"
 
 namespace ergon::lanes {
@@ -43,7 +44,7 @@ inline unsigned orthonormalise(LowestPairs<N>& pairs) {
 #pragma GCC unroll 12
     for (int k = 0; k < N; ++k) sum[k & 1] += z[k] * z[k];
     Real squared = sum[0] + sum[1];
-    Mask bad = both(from_bits(pairs.wanted[j]), negate(less(splat(0.25), squared)));
+    Mask bad = both(from_bits(pairs.wanted[j]), negate(less(splat(0.7), squared)));
     parallel = either(parallel, bad);
     Real inverse = rsqrt(max(squared, splat(1e-20)));
 #pragma GCC unroll 12
@@ -52,26 +53,71 @@ inline unsigned orthonormalise(LowestPairs<N>& pairs) {
   return bits(parallel);
 }
 
-// Returns the lanes in which the pairs are not accurate.
+// A tridiagonal matrix, or minus it in the lanes `flipped`, with the fewer eigenvalues below zero.
 template <int N>
-inline unsigned find_lowest_pairs(const Real* d, const Real* e, const Real* squares, const Characteristic& zero,
-                                  Real mirror, Real negative, LowestPairs<N>& pairs) {
-  Real bound = splat(0);
+struct Oriented {
+  Real d[N], e[N], squares[N];
+  Real norm;      // not below the largest absolute eigenvalue
+  Real noise;     // an eigenvalue between -noise and noise counts as zero
+  Real negative;  // number of eigenvalues below -noise
+  Mask flipped;
+  Real mirror;              // -1 where flipped, else 1
+  Characteristic at_noise;  // of the matrix before it was flipped, at -noise or, where flipped, at noise
+};
+
+// Returns false when no lane has a negative eigenvalue.
+template <int N>
+inline bool orient(const Tridiagonal<N>& t, Oriented<N>& o) {
+  // Where an off-diagonal entry is zero the sequence of minors could vanish; what is added is nothing beside 1.
+#pragma GCC unroll 12
+  for (int i = 0; i < N - 1; ++i) {
+    o.e[i] = copysign(max(abs(t.e[i]), splat(2e-17)), t.e[i]);
+    o.squares[i] = o.e[i] * o.e[i];
+  }
+  o.norm = splat(0);
 #pragma GCC unroll 12
   for (int i = 0; i < N; ++i) {
-    Real radius = (i > 0 ? abs(e[i - 1]) : splat(0)) + (i < N - 1 ? abs(e[i]) : splat(0));
-    bound = min(bound, d[i] - radius);
+    Real row = abs(t.d[i]) + (i > 0 ? abs(o.e[i - 1]) : splat(0)) + (i < N - 1 ? abs(o.e[i]) : splat(0));
+    o.norm = max(o.norm, row);
   }
+  o.noise = 1e-15 * o.norm + 1e-16;
+  const Characteristic below = characteristic<N>(t.d, o.squares, -o.noise);
+  const Characteristic above = characteristic<N>(t.d, o.squares, o.noise);
+  if (!any(less(splat(0.5), below.below))) return false;
+  const Real positive = N - above.below;
+  o.flipped = less(positive, below.below);
+  o.negative = min(positive, below.below);
+  o.mirror = select(o.flipped, splat(-1), splat(1));
+  o.at_noise = {select(o.flipped, above.p, below.p), select(o.flipped, above.p1, below.p1),
+                select(o.flipped, above.p2, below.p2), o.negative};
+#pragma GCC unroll 12
+  for (int i = 0; i < N; ++i) {
+    o.d[i] = o.mirror * t.d[i];
+    if (i < N - 1) o.e[i] = o.mirror * o.e[i];
+  }
+  return true;
+}
+
+// Returns the lanes in which the pairs are not accurate. Orthonormal vectors with small residuals whose number is that
+// of the negative eigenvalues are all there are.
+template <int N>
+inline unsigned find_lowest_pairs(const Oriented<N>& o, LowestPairs<N>& pairs) {
   unsigned open[LowestPairs<N>::kMost];
-  for (int j = 0; j < pairs.count; ++j) open[j] = pairs.wanted[j];
-  unsigned failed =
-      lowest_eigenvalues<N>(d, squares, bound * 1.01 - 1e-3, zero, mirror, negative, pairs.count, open, pairs.x);
+  for (int j = 0; j < LowestPairs<N>::kMost; ++j) {
+    open[j] = pairs.wanted[j] = bits(less(splat(j + 0.5), o.negative));
+    if (open[j]) pairs.count = j + 1;
+  }
+  const Real bound = -1.01 * o.norm - 1e-3;
+  unsigned failed = lowest_eigenvalues<N>(o.d, o.squares, bound, -o.noise, o.at_noise, o.mirror, o.negative,
+                                          pairs.count, open, pairs.x);
   for (int attempt = 0; attempt < 3; ++attempt) {
     unsigned inaccurate = 0;
     for (int j = 0; j < pairs.count; ++j) {
-      TwistedResult t = twisted_eigenvector<N>(d, e, squares, pairs.x[j], pairs.z[j]);
-      inaccurate |= pairs.wanted[j] & ~bits(less(t.residual, splat(2e-15)));
-      pairs.x[j] = select(from_bits(pairs.wanted[j]), pairs.x[j] + t.correction, splat(0));
+      const TwistedResult t = twisted_eigenvector<N>(o.d, o.e, o.squares, pairs.x[j], pairs.z[j]);
+      const Mask wanted = from_bits(pairs.wanted[j]);
+      inaccurate |= pairs.wanted[j] & ~bits(less(t.residual, 3e-16 * o.norm));
+      pairs.x[j] = select(wanted, pairs.x[j] + t.correction, splat(0));
+      failed |= pairs.wanted[j] & ~bits(less(pairs.x[j], o.noise));
     }
     if ((inaccurate & ~failed) == 0) break;
     if (attempt == 2) failed |= inaccurate;
@@ -95,7 +141,7 @@ inline void add_outer(double* packed, Real weight, const Real* z) {
 
 // Adds factor times |x| z z' over the negative eigenvalues x of T in the chosen lanes.
 template <int N>
-void project_by_ql(double* packed, const Tridiagonal<N>& t, Mask chosen, Real factor) {
+void project_by_ql(double* packed, const Tridiagonal<N>& t, Real norm, Mask chosen, Real factor) {
   Real d[N], e[N], z[N][N];
   for (int c = 0; c < N; ++c) {
     d[c] = t.d[c];
@@ -103,7 +149,7 @@ void project_by_ql(double* packed, const Tridiagonal<N>& t, Mask chosen, Real fa
     for (int r = 0; r < N; ++r) z[c][r] = splat(r == c);
     apply_reflections(t, z[c]);
   }
-  ql_iterate<N>(d, e, z);
+  ql_iterate<N>(d, e, norm, z);
   for (int c = 0; c < N; ++c) {
     add_outer<N>(packed, select(chosen, max(-d[c], splat(0)) * factor, splat(0)), z[c]);
   }
@@ -111,8 +157,8 @@ void project_by_ql(double* packed, const Tridiagonal<N>& t, Mask chosen, Real fa
 
 // The same from the pairs of T or, in the lanes `flipped`, of -T.
 template <int N>
-void project_by_pairs(double* packed, Negative mode, Mask chosen, Mask flipped, Real factor,
-                      const LowestPairs<N>& pairs) {
+void project_by_pairs(double* packed, const Tridiagonal<N>& t, Negative mode, Mask chosen, Mask flipped, Real factor,
+                      LowestPairs<N>& pairs) {
   flipped = both(flipped, chosen);
   if (any(flipped)) {
     const Real rest = splat(mode == Negative::clamp ? 0.0 : -1.0);
@@ -122,12 +168,18 @@ void project_by_pairs(double* packed, Negative mode, Mask chosen, Mask flipped, 
     }
   }
   for (int j = 0; j < pairs.count; ++j) {
-    add_outer<N>(packed, select(chosen, max(-pairs.x[j], splat(0)) * factor, splat(0)), pairs.z[j]);
+    Real* z = pairs.z[j];
+    // A vector that was rejected may hold NaN.
+    const Mask used = both(chosen, from_bits(pairs.wanted[j]));
+#pragma GCC unroll 12
+    for (int k = 0; k < N; ++k) z[k] = select(used, z[k], splat(0));
+    apply_reflections(t, z);
+    add_outer<N>(packed, max(-pairs.x[j], splat(0)) * factor, z);
   }
 }
 
 template <int N>
-void project_lanes(double* packed, Negative mode, unsigned lanes) {
+void project_by_tridiagonal(double* packed, Negative mode, unsigned lanes) {
   constexpr int kEntries = N * (N + 1) / 2;
   Tridiagonal<N> t;
   Real largest = splat(0), sum = splat(0);
@@ -139,46 +191,31 @@ void project_lanes(double* packed, Negative mode, unsigned lanes) {
   }
   // A NaN or an infinity makes the sum one.
   Mask chosen = both(from_bits(lanes), less(sum, splat(__builtin_inf())));
-  largest = max(largest, splat(1e-290));
-  if constexpr (N == 1) {
-    Real a = load(packed);
-    store(packed, select(chosen, mode == Negative::clamp ? max(a, splat(0)) : abs(a), a));
-    return;
-  }
+  largest = select(chosen, max(largest, splat(1e-290)), splat(1));
   Real scale = 1 / largest;
 #pragma GCC unroll 78
   for (int i = 0; i < kEntries; ++i) t.u[i] = select(chosen, load(packed + i * kWidth) * scale, splat(0));
   tridiagonalise(t);
 
-  // An off-diagonal entry that is not zero splits nothing; what is added is nothing beside 1.
-  Real d[N], e[N], squares[N];
-#pragma GCC unroll 12
-  for (int i = 0; i < N - 1; ++i) {
-    e[i] = copysign(max(abs(t.e[i]), splat(2e-17)), t.e[i]);
-    squares[i] = e[i] * e[i];
-  }
-  const Characteristic zero = characteristic<N>(t.d, squares, splat(0));
-  Real below = zero.below;
-  if (!any(less(splat(0.5), below))) return;
-  Mask flipped = less(splat(N / 2 + 0.5), below);
-  below = select(flipped, N - below, below);
-#pragma GCC unroll 12
-  for (int i = 0; i < N; ++i) {
-    d[i] = select(flipped, -t.d[i], t.d[i]);
-    if (i < N - 1) e[i] = select(flipped, -e[i], e[i]);
-  }
+  Oriented<N> o;
+  if (!orient(t, o)) return;
   LowestPairs<N> pairs;
-  for (int j = 0; j < LowestPairs<N>::kMost; ++j) {
-    pairs.wanted[j] = bits(less(splat(j + 0.5), below));
-    if (pairs.wanted[j]) pairs.count = j + 1;
-  }
-  unsigned failed = find_lowest_pairs<N>(d, e, squares, zero, select(flipped, splat(-1), splat(1)), below, pairs);
-  for (int j = 0; j < pairs.count; ++j) apply_reflections(t, pairs.z[j]);
+  const unsigned failed = find_lowest_pairs(o, pairs);
+  const Real factor = largest * (mode == Negative::clamp ? 1.0 : 2.0);
+  project_by_pairs<N>(packed, t, mode, both(chosen, from_bits(~failed)), o.flipped, factor, pairs);
+  const Mask rest = both(chosen, from_bits(failed));
+  if (any(rest)) project_by_ql<N>(packed, t, o.norm, rest, factor);
+}
 
-  Real factor = largest * (mode == Negative::clamp ? 1.0 : 2.0);
-  project_by_pairs<N>(packed, mode, both(chosen, from_bits(~failed)), flipped, factor, pairs);
-  Mask rest = both(chosen, from_bits(failed));
-  if (any(rest)) project_by_ql<N>(packed, t, rest, factor);
+template <int N>
+void project_lanes(double* packed, Negative mode, unsigned lanes) {
+  if constexpr (N == 1) {
+    project_1(packed, mode == Negative::absolute, lanes);
+  } else if constexpr (N == 2) {
+    project_2(packed, mode == Negative::absolute, lanes);
+  } else {
+    project_by_tridiagonal<N>(packed, mode, lanes);
+  }
 }
 
 }  // namespace

@@ -15,6 +15,7 @@ void project(double* packed, bool absolute, unsigned lanes) {
 
 template <int N>
 void fill(ProjectionTable& table) {
+  table.definite_tolerance[N] = definite_tolerance(N);
   table.definite[N] = definite<N>;
   table.project[N] = project<N>;
   if constexpr (N > 1) fill<N - 1>(table);

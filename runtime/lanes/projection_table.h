@@ -7,6 +7,7 @@ struct ProjectionTable {
   static constexpr int kLargest = 12;
   int lanes = 0;
   // Indexed by N; see definite<N> and project_lanes<N> in runtime/lanes/projection.h.
+  double definite_tolerance[kLargest + 1] = {};
   unsigned (*definite[kLargest + 1])(const double* packed) = {};
   void (*project[kLargest + 1])(double* packed, bool absolute, unsigned lanes) = {};
 };
