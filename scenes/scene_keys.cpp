@@ -26,6 +26,11 @@ Section<TimeSettings> time_section() {
       throw SourceError(time.at("steps"), "[time] has both 'end' and 'steps'; keep one of them");
     if (!time.end && !time.steps)
       throw SourceError(time.place, "[time] lacks 'end' (simulated time, in s) or 'steps' (number of time steps)");
+    constexpr double most = 1e9;
+    if (time.end && *time.end / time.dt > most)
+      throw SourceError(time.at("end"),
+                        fmt::format("{} s in steps of {} s are {:.3g} steps; at most {:.3g} are counted", *time.end,
+                                    time.dt, *time.end / time.dt, most));
   };
   return out;
 }
