@@ -32,18 +32,24 @@ inline TwistedResult twisted_eigenvector(const Real* d, const Real* e, const Rea
     up_ratio[k] = e[k - 1] * inverse;
     up[k - 1] = (d[k - 1] - x) - squares[k - 1] * inverse;
   }
-  Real least = up[0], size = abs(least), index = splat(0);
+  Real gamma[N];
+  Real size[2] = {splat(1e300), splat(1e300)};
 #pragma GCC unroll 12
-  for (int i = 1; i < N; ++i) {
-    Real gamma = down[i] + (up[i] - (d[i] - x));
-    Mask better = less(abs(gamma), size);
-    least = select(better, gamma, least);
-    size = select(better, abs(gamma), size);
-    index = select(better, splat(i), index);
+  for (int i = 0; i < N; ++i) {
+    gamma[i] = down[i] + (up[i] - (d[i] - x));
+    size[i & 1] = min(abs(gamma[i]), size[i & 1]);
   }
+  const Real least = min(size[0], size[1]);
+  Real signed_least = splat(0);
   Mask here[N];
+  Mask found = less(splat(1), splat(0));
 #pragma GCC unroll 12
-  for (int i = 0; i < N; ++i) here[i] = both(less(splat(i - 0.5), index), less(index, splat(i + 0.5)));
+  for (int i = 0; i < N; ++i) {
+    const Mask equal = less_equal(abs(gamma[i]), least);
+    here[i] = both(equal, negate(found));
+    found = either(found, equal);
+    signed_least = select(equal, gamma[i], signed_least);
+  }
   Real tail = select(here[0], splat(1), splat(0));
   z[0] = tail;
 #pragma GCC unroll 12
@@ -60,7 +66,7 @@ inline TwistedResult twisted_eigenvector(const Real* d, const Real* e, const Rea
   Real inverse = rsqrt(sum[0] + sum[1]);
 #pragma GCC unroll 12
   for (int i = 0; i < N; ++i) z[i] *= inverse;
-  return {size * inverse, least * inverse * inverse};
+  return {least * inverse, signed_least * inverse * inverse};
 }
 
 }  // namespace

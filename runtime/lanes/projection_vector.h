@@ -110,6 +110,15 @@ inline bool any(Mask m) { return bits(m) != 0; }
 inline Real max(Real a, Real b) { return select(less(b, a), a, b); }
 inline Real min(Real a, Real b) { return select(less(a, b), a, b); }
 
+// Sum of a[i]*b[i] over i < n, in four parts so that they need not wait for each other.
+template <int n>
+inline Real dot(const Real* a, const Real* b) {
+  Real s[4] = {splat(0), splat(0), splat(0), splat(0)};
+#pragma GCC unroll 12
+  for (int i = 0; i < n; ++i) s[i & 3] += a[i] * b[i];
+  return (s[0] + s[1]) + (s[2] + s[3]);
+}
+
 // p is aligned to 64 bytes.
 inline Real load(const double* p) {
   Real a;
