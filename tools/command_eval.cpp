@@ -64,10 +64,10 @@ int eval(const Options& options, std::ostream& out) {
   const std::vector<int> stencils = density ? std::vector<int>() : active_stencils(energy, kernel, mesh, values, x);
   System system = make_system(energy, kernel, mesh, stencils, values);
   const Evaluation state = system.value(x);
-  if (!(state.require > 0)) {
-    throw InputError(fmt::format("{}: a `require` condition of {} does not hold at these positions (margin {})",
-                                 options.positions.empty() ? options.mesh : options.positions, energy.name,
-                                 state.require));
+  if (!(state.require > 0) || !std::isfinite(state.value)) {
+    throw InputError(fmt::format(
+        "{}: {} is not defined at these positions: a `require` condition does not hold, or its value is not finite",
+        options.positions.empty() ? options.mesh : options.positions, energy.name));
   }
   Eigen::Matrix3Xd gradient;
   BlockMatrix hessian;

@@ -60,12 +60,12 @@ TEST_F(CommandLine, PointsIntoAnEnergyThatIsWrong) {
 }
 
 TEST_F(CommandLine, AnUnsoundEnergyFails) {
-  write("stressed.energy",
-        "# Not free of stress at rest.\ndensity stressed solid\nparam mu Pa (0, inf)\nvalue mu*tr(F'*F)\n");
-  const Answer answer = ergon("check stressed.energy");
+  write("tied.energy",
+        "# Not the same after a rotation.\ndensity tied solid\nparam mu Pa (0, inf)\nvalue mu*(F[0,0] - 1)^2\n");
+  const Answer answer = ergon("check tied.energy");
   EXPECT_EQ(answer.code, 1);
   EXPECT_EQ(answer.err, "");
-  EXPECT_THAT(answer.out, HasSubstr("\n  error "));
+  EXPECT_THAT(answer.out, HasSubstr("\n  error    rigid motion "));
   EXPECT_THAT(answer.out, HasSubstr("\nnot sound: "));
   EXPECT_EQ(ergon("check stable_neo_hookean").code, 0);
 }

@@ -105,7 +105,8 @@ TEST_F(Eval, KeepsOnlyActiveStencils) {
   EXPECT_EQ(result["elements"], 3);
   EXPECT_NEAR(result["value"], 3 * 3 * 0.0625 * std::log(2.0), 1e-14);
   expect_error(barrier + "--set height=0.25 --set dhat=\"0.5 m\"",
-               "tet.msh: a `require` condition of ground_barrier does not hold at these positions (margin -0.25)");
+               "tet.msh: ground_barrier is not defined at these positions: a `require` condition does not hold, or its "
+               "value is not finite");
 }
 
 TEST_F(Eval, RestStateIsTheDefault) {

@@ -65,7 +65,11 @@ TEST_F(RunCommand, AFolderThatCannotBeMadeIsBadInput) {
 
 TEST_F(RunCommand, AnInterruptKeepsWhatWasDone) {
   write("long.toml", scene(1000000));
-  const Answer answer = shell("timeout --signal=INT 1 " ERGON_BINARY_DIR "/ergon run long.toml --out results --quiet");
+  const Answer answer = shell(ERGON_BINARY_DIR
+                              "/ergon run long.toml --out results --quiet & pid=$!\n"
+                              "for i in $(seq 1000); do [ -s results/report.jsonl ] && break; sleep 0.05; done\n"
+                              "kill -INT $pid; wait $pid");
+  EXPECT_EQ(answer.code, 1);
   EXPECT_THAT(answer.err, testing::MatchesRegex("ergon: error: interrupted after step [0-9]+\n"));
   EXPECT_EQ(nlohmann::json::parse(read("results/summary.json"))["finished"], false);
 }

@@ -1,0 +1,92 @@
+// tools/checks.sh on small trees: each check finds what it is there for.
+
+#include <gmock/gmock.h>
+
+#include "tests/tools/command.h"
+
+namespace ergon {
+namespace {
+
+using testing::HasSubstr;
+
+class Checks : public CommandTest {
+ protected:
+  void SetUp() override {
+    CommandTest::SetUp();
+    std::filesystem::copy(ERGON_SOURCE_DIR "/.clang-format", folder / ".clang-format");
+    write("runtime/good.h", "#pragma once\n#include <vector>\n\n#include \"runtime/other.h\"\n");
+    write("symbolic/good.cpp", "#include \"symbolic/good.h\"\n");
+    write("codegen/good.cpp", "#include \"runtime/kernel.h\"\n#include \"symbolic/energy.h\"\n");
+    write("tools/good.sh", "#!/bin/bash\necho good\n");
+  }
+  Answer checks() { return shell("ERGON_TREE=\"$PWD\" '" ERGON_SOURCE_DIR "/tools/checks.sh'"); }
+  void expect_found(const std::string& check, const std::string& message) {
+    const Answer answer = checks();
+    EXPECT_EQ(answer.code, 1);
+    EXPECT_THAT(answer.out, HasSubstr("failed: " + check + "\n"));
+    EXPECT_THAT(answer.out + answer.err, HasSubstr(message));
+  }
+};
+
+TEST_F(Checks, AGoodTreePasses) {
+  const Answer answer = checks();
+  EXPECT_EQ(answer.code, 0) << answer.out << answer.err;
+  EXPECT_EQ(answer.out,
+            "passed: format\npassed: include directions\npassed: file lengths\npassed: shell scripts\n"
+            "passed: host paths\n");
+}
+
+TEST_F(Checks, RuntimeKnowsNothingOfTheCompiler) {
+  write("runtime/bad.cpp", "#include \"codegen/compile.h\"\n");
+  expect_found("include directions", "runtime/bad.cpp:1: runtime may not include \"codegen/compile.h\"");
+  write("runtime/bad.cpp", "\n#include <ginac/ginac.h>\n");
+  expect_found("include directions", "runtime/bad.cpp:2: runtime does not know GiNaC");
+}
+
+TEST_F(Checks, CodegenSeesOfTheRuntimeOnlyTheKernelStruct) {
+  write("codegen/bad.cpp", "#include \"runtime/system.h\"\n");
+  expect_found("include directions", "codegen/bad.cpp:1: codegen may not include \"runtime/system.h\"");
+}
+
+TEST_F(Checks, IncludesAreWrittenFromTheRoot) {
+  write("symbolic/bad.cpp", "#include \"energy.h\"\n");
+  expect_found("include directions", "symbolic/bad.cpp:1: \"energy.h\" is not written from the root of the repository");
+}
+
+TEST_F(Checks, FormatAndLengthAreKept) {
+  write("tests/bad.cpp", "int   x;\n");
+  expect_found("format", "tests/bad.cpp:1:4");
+  std::string lines;
+  for (int i = 0; i < 400; ++i) lines += "//\n";
+  write("tests/bad.cpp", lines);
+  EXPECT_EQ(checks().code, 0);
+  write("tests/bad.cpp", lines + "//\n");
+  expect_found("file lengths", "tests/bad.cpp: more than 400 lines");
+}
+
+TEST_F(Checks, ScriptsAndPathsAreLookedAt) {
+  write("tools/bad.sh", "#!/bin/bash\nif true\n");
+  expect_found("shell scripts", "tools/bad.sh: line 3");
+  std::filesystem::remove(folder / "tools/bad.sh");
+  write("energies/bad.energy", std::string("# see /ho") + "me/somebody/notes\n");
+  expect_found("host paths", "energies/bad.energy:1:");
+}
+
+TEST_F(Checks, UnknownArgumentsAreRefused) {
+  const Answer checks = shell(ERGON_SOURCE_DIR "/tools/checks.sh --tidi");
+  EXPECT_EQ(checks.code, 1);
+  EXPECT_EQ(checks.err, "ergon: error: unknown argument '--tidi'; usage: tools/checks.sh [--tidy]\n");
+  const Answer test = shell(ERGON_SOURCE_DIR "/tools/test --fats");
+  EXPECT_EQ(test.code, 1);
+  EXPECT_EQ(test.err, "ergon: error: unknown argument '--fats'; usage: tools/test [--fast]\n");
+}
+
+TEST_F(Checks, NothingThatTheProjectNeedsIsMissing) {
+  // The tests run where tools/setup.sh has been: its own look-up then finds nothing to install.
+  const Answer answer = shell("bash -c \"source '" ERGON_SOURCE_DIR "/tools/setup.sh' && missing_packages\"");
+  EXPECT_EQ(answer.code, 0) << answer.err;
+  EXPECT_EQ(answer.out, "");
+}
+
+}  // namespace
+}  // namespace ergon
