@@ -149,6 +149,7 @@ RunSummary run_scene(const Scene& scene, BuiltScene& built, const RunOptions& op
   summary.peak_memory = peak_memory();
   summary.output_seconds = output_seconds;
   output->summary(summary);
+  if (options.last_state != nullptr) *options.last_state = state;
   return summary;
 }
 

@@ -17,6 +17,7 @@ struct RunOptions {
   std::function<void(const StepRecord& record, long steps)> progress;
   // Asked before each step; true ends the run there.
   std::function<bool()> stop;
+  State* last_state = nullptr;  // receives the last good state
 };
 
 // The folder of the scene's output unless another is asked for: as the scene says, or out/ and the name of its file.

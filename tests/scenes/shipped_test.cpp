@@ -1,0 +1,109 @@
+// The scenes that come with the program do what their descriptions say.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "scenes/run.h"
+#include "tests/scenes/real_kernels.h"
+
+namespace ergon {
+namespace {
+
+struct Finished {
+  BuiltScene built;
+  RunSummary summary;
+  State end;
+};
+
+Finished finish(const std::string& name) {
+  const Scene scene = read_scene(ERGON_SOURCE_DIR "/scenes/" + name);
+  Finished out{build_scene(scene, shipped_energies(), real_kernel), {}, {}};
+  RunOptions options;
+  options.last_state = &out.end;
+  out.summary = run_scene(scene, out.built, options);
+  return out;
+}
+
+TEST(shipped_scenes, all_are_read_and_built) {
+  int scenes = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(ERGON_SOURCE_DIR "/scenes")) {
+    if (entry.path().extension() != ".toml") continue;
+    ++scenes;
+    EXPECT_NO_THROW(build_scene(read_scene(entry.path().string()), shipped_energies(), real_kernel)) << entry.path();
+  }
+  EXPECT_GE(scenes, 2);
+}
+
+TEST(SlowScenes, the_bunny_comes_to_rest_on_the_floor) {
+  const Finished bunny = finish("bunny_drop.toml");
+  const Eigen::Matrix3Xd &start = bunny.built.start.x, &end = bunny.end.x;
+  // 194.288 is the volume of the mesh in its own unit.
+  EXPECT_NEAR(bunny.built.mass.sum(), 1000 * 194.288 * std::pow(0.0207, 3), 1e-5);
+  EXPECT_NEAR(start.row(2).maxCoeff() - start.row(2).minCoeff(), 0.2, 1e-3);
+
+  EXPECT_EQ(bunny.summary.failure, "");
+  EXPECT_EQ(bunny.summary.unconverged_steps, 0);
+  EXPECT_GT(bunny.summary.smallest_gap, 0);  // over all vertices and steps
+  EXPECT_LT(bunny.summary.largest_speed, 1e-3);
+  // The energy never rises by itself: implicit Euler takes energy out, and so does friction.
+  EXPECT_LE(bunny.summary.max_energy_rise, 1e-9 * bunny.summary.start_energy);
+
+  EXPECT_GT(end.row(2).minCoeff(), 0);
+  EXPECT_LT(end.row(2).minCoeff(), 1e-3);
+  // It stands as it fell, a little flatter, and carries its weight.
+  EXPECT_GT(end.row(2).maxCoeff(), 0.15);
+  double force = 0;
+  for (const GroundContact::Force& f : bunny.built.ground->forces(end)) force += f.newton;
+  EXPECT_NEAR(force, 9.81 * bunny.built.mass.sum(), 0.01 * 9.81 * bunny.built.mass.sum());
+}
+
+// Vertical deflection of the tip of a thin inextensible beam of length L under its weight q (N/m), bending stiffness EI
+// (N m^2): EI theta'' = -q (L - s) cos(theta), theta(0) = 0, theta'(L) = 0, by shooting and midpoint steps. theta is
+// the angle below the horizontal.
+double elastica_deflection(double q, double L, double EI) {
+  const int n = 4000;
+  const double h = L / n;
+  auto shoot = [&](double curvature, double& deflection) {
+    double theta = 0;
+    deflection = 0;
+    for (int i = 0; i < n; ++i) {
+      const double s = (i + 0.5) * h;
+      const double slope = -q * (L - i * h) * std::cos(theta) / EI;
+      const double middle = theta + 0.5 * h * curvature;
+      theta += h * (curvature + 0.5 * h * slope);
+      curvature -= h * q * (L - s) * std::cos(middle) / EI;
+      deflection += h * std::sin(middle);
+    }
+    return curvature;
+  };
+  double low = 0, high = q * L * L / EI, deflection = 0;
+  for (int i = 0; i < 100; ++i) {
+    const double middle = 0.5 * (low + high);
+    (shoot(middle, deflection) > 0 ? high : low) = middle;
+  }
+  return deflection;
+}
+
+TEST(SlowScenes, the_cantilever_bends_as_the_elastica_does) {
+  const double side = 0.05;
+  // A light load bends as q L^4 / (8 EI), which holds the elastica itself to a closed form.
+  EXPECT_NEAR(elastica_deflection(1e-3, 1, 1), 1e-3 / 8, 1e-9);
+
+  const Finished beam = finish("cantilever.toml");
+  EXPECT_EQ(beam.summary.failure, "");
+  EXPECT_LE(beam.summary.max_energy_rise, 1e-9 * beam.summary.start_energy);
+  double tip = 0;
+  int count = 0;
+  for (int v = 0; v < beam.end.x.cols(); ++v) {
+    if (beam.built.start.x(0, v) < 0.4 - 1e-9) continue;
+    tip += beam.built.start.x(2, v) - beam.end.x(2, v);
+    ++count;
+  }
+  const double thin = elastica_deflection(1100 * 9.81 * side * side, 0.4, 1e6 * std::pow(side, 4) / 12);
+  // Shear and stretch, which the elastica leaves out, are of the order (side/length)^2 = 1.6 percent.
+  EXPECT_NEAR(tip / count, thin, 0.03 * thin);
+}
+
+}  // namespace
+}  // namespace ergon
