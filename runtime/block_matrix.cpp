@@ -50,13 +50,17 @@ BlockMatrix::BlockMatrix(int block_rows, const std::vector<std::pair<int, int>>&
   values_.resize(row_index_.size(), 0.0);
 }
 
-ptrdiff_t BlockMatrix::find(int i, int j) const {
+int BlockMatrix::index_of(int i, int j) const {
   const auto column = static_cast<size_t>(j);
   const auto first = block_row_.begin() + block_start_[column];
   const auto last = block_row_.begin() + block_start_[column + 1];
   const auto found = std::lower_bound(first, last, i);
-  if (found == last || *found != i) return -1;
-  return column_start_[3 * column] + 3 * (found - first);
+  return found == last || *found != i ? -1 : static_cast<int>(found - block_row_.begin());
+}
+
+ptrdiff_t BlockMatrix::find(int i, int j) const {
+  const int index = index_of(i, j);
+  return index < 0 ? -1 : start_of(index, j);
 }
 
 void BlockMatrix::set_zero() { std::fill(values_.begin(), values_.end(), 0.0); }

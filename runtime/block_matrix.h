@@ -22,6 +22,12 @@ class BlockMatrix {
   // Where block (i, j), i >= j, starts in values(), or -1 when it is not in the pattern. Its column c starts
   // column_stride(j) * c doubles later; within a column the three rows are adjacent.
   ptrdiff_t find(int i, int j) const;
+  // The number of block (i, j), i >= j, in the order of the matrix, or -1; and where a block of column j starts.
+  int index_of(int i, int j) const;
+  ptrdiff_t start_of(int index, int j) const {
+    const auto column = static_cast<size_t>(j);
+    return column_start_[3 * column] + 3 * static_cast<ptrdiff_t>(index - block_start_[column]);
+  }
   int column_stride(int j) const {
     return 3 * (block_start_[static_cast<size_t>(j) + 1] - block_start_[static_cast<size_t>(j)]);
   }

@@ -13,6 +13,11 @@
 namespace ergon {
 namespace {
 
+// Enough chunks to keep many cores busy, each large enough for its vertices to be used many times.
+constexpr int kChunks = 192;
+constexpr int kSmallestChunk = 64;  // stencils
+constexpr int kLargestChunk = 512;
+
 int size_of(const ErgonInput& input) { return input.rows * input.cols; }
 
 std::string values_text(size_t n) { return fmt::format("{} value{}", n, n == 1 ? "" : "s"); }
@@ -87,12 +92,14 @@ void Potential::Impl::give_params(const Parameters& values) {
   ++param_version;
 }
 
+void Potential::Impl::cut() { chunk = std::clamp(count / kChunks, kSmallestChunk, kLargestChunk) / lanes; }
+
 void Potential::Impl::order_vertices(const std::vector<int>& given) {
   const auto width = static_cast<size_t>(lanes), n = static_cast<size_t>(points);
   vertices.resize(static_cast<size_t>(blocks()) * n * width);
   for (int block = 0; block < blocks(); ++block) {
     for (size_t l = 0; l < width; ++l) {
-      const auto stencil = static_cast<size_t>(padded(block * lanes + static_cast<int>(l)));
+      const auto stencil = static_cast<size_t>(stencil_in(block, static_cast<int>(l)));
       for (size_t a = 0; a < n; ++a) {
         vertices[(static_cast<size_t>(block) * n + a) * width + l] = given[stencil * n + a];
       }
@@ -118,7 +125,7 @@ void Potential::Impl::write_raw(const ErgonInput& target, const std::vector<doub
   for (int block = 0; block < blocks(); ++block) {
     double* out = raw.data() + (static_cast<size_t>(block) * rows + static_cast<size_t>(target.offset)) * width;
     for (size_t l = 0; l < width; ++l) {
-      const double* value = values.data() + step * static_cast<size_t>(padded(block * lanes + static_cast<int>(l)));
+      const double* value = values.data() + step * static_cast<size_t>(stencil_in(block, static_cast<int>(l)));
       for (size_t c = 0; c < size; ++c) out[c * width + l] = value[c];
     }
   }
@@ -183,8 +190,8 @@ void Potential::Impl::prepare() {
 }
 
 lanes::Stencils Potential::Impl::view() const {
-  return {kernel.table,   count,           points,          quadrature, vertices.data(), weights.data(),
-          volumes.data(), elements.data(), uniforms.data(), nullptr,    nullptr};
+  return {kernel.table,   chunk,          count,           points,          quadrature, vertices.data(),
+          weights.data(), volumes.data(), elements.data(), uniforms.data(), nullptr,    nullptr};
 }
 
 Potential Potential::on_stencils(std::string name, Kernel kernel, std::vector<int> stencils, const Eigen::Matrix3Xd& X,
@@ -215,6 +222,7 @@ void Potential::set_stencils(std::vector<int> stencils, const Eigen::Matrix3Xd& 
   }
   d.stencils = std::move(stencils);
   d.count = static_cast<int>(d.stencils.size()) / d.points;
+  d.cut();
   d.order_vertices(d.stencils);
   d.allocate_raw();
   std::fill(d.lag_set.begin(), d.lag_set.end(), char{0});

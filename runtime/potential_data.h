@@ -1,6 +1,7 @@
 #pragma once
 // What a Potential holds: its data as it was given and in lane order. Included by potential*.cpp and system*.cpp only.
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -35,8 +36,22 @@ struct Potential::Impl {
   unsigned long lag_version = 1;
   unsigned long param_version = 1;
 
+  // Stencils are cut into chunks of `chunk` blocks (the last may be shorter). Within a chunk of n blocks, lane l holds
+  // n stencils that follow one another: neighbours share vertices, and lanes of one block should not.
+  int chunk = 1;
   int blocks() const { return (count + lanes - 1) / lanes; }
-  int padded(int stencil) const { return stencil < count ? stencil : count - 1; }
+  int chunks() const { return (blocks() + chunk - 1) / chunk; }
+  // The stencil in a lane; in a lane of padding, the chunk's last.
+  int stencil_in(int block, int lane) const {
+    const int first = block / chunk * chunk, n = std::min(chunk, blocks() - first);
+    return std::min(first * lanes + lane * n + block - first, std::min((first + n) * lanes, count) - 1);
+  }
+  // Lanes from this one on are padding.
+  int lanes_in(int block) const {
+    const int first = block / chunk * chunk, n = std::min(chunk, blocks() - first);
+    return std::min(lanes, (count - first * lanes - (block - first) + n - 1) / n);
+  }
+  void cut();
 
   // Checks the kernel and sets what follows from it alone.
   void bind(std::string potential_name, Kernel bound);

@@ -102,6 +102,7 @@ Potential Potential::on_mesh(std::string name, Kernel kernel, const Mesh& mesh, 
   d.check_params(params);
   d.give_params(params);
 
+  d.cut();
   const auto width = static_cast<size_t>(d.lanes), free = static_cast<size_t>(n - 1);
   const auto vectors = static_cast<size_t>(dimension), points = static_cast<size_t>(d.quadrature);
   const auto blocks = static_cast<size_t>(d.blocks());
@@ -113,7 +114,7 @@ Potential Potential::on_mesh(std::string name, Kernel kernel, const Mesh& mesh, 
   Eigen::Matrix3Xd nodes(3, n);
   Eigen::MatrixXd gradients;
   for (size_t lane = 0; lane < blocks * width; ++lane) {
-    const int cell = d.padded(static_cast<int>(lane));
+    const int cell = d.stencil_in(static_cast<int>(lane / width), static_cast<int>(lane % width));
     const int* vertex = d.stencils.data() + static_cast<ptrdiff_t>(cell) * n;
     // In ascending order of vertex, as lanes::Stencils::vertices wants them.
     std::iota(order.begin(), order.end(), 0);

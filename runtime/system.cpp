@@ -65,19 +65,12 @@ int System::add(Potential potential) {
 }
 
 void System::Impl::prepare() {
-  int room = 0;
   for (SystemTerm& term : terms) {
     term.data().prepare();
     term.colour(seen);
     term.stencils = term.data().view();
     term.stencils.slots = term.slots.data();
-    term.stencils.strides = term.strides.data();
-    if (!term.kernel().zero_hessian) room = std::max(room, term.operations->scratch_size(term.stencils));
-  }
-  const auto threads = static_cast<size_t>(omp_get_max_threads());
-  if (scratch.size() < threads) scratch.resize(threads);
-  for (auto& s : scratch) {
-    if (s.size() < static_cast<size_t>(room)) s.resize(static_cast<size_t>(room));
+    term.stencils.turned = term.turned.data();
   }
 }
 
@@ -168,7 +161,7 @@ Evaluation System::hessian(const Eigen::Matrix3Xd& x, Projection projection, Eig
   gradient.resize(3, d.vertices);
 #pragma omp parallel if (d.worth_threads())
   {
-    double* scratch = d.scratch[static_cast<size_t>(omp_get_thread_num())].data();
+    const lanes::Workspace room = d.rooms[static_cast<size_t>(omp_get_thread_num())].view();
 #pragma omp for schedule(static) nowait
     for (size_t i = 0; i < d.gradient.size(); ++i) d.gradient[i] = 0;
     d.start_matrix(matrix);
@@ -177,8 +170,8 @@ Evaluation System::hessian(const Eigen::Matrix3Xd& x, Projection projection, Eig
         const lanes::BlockRange range = term.range(chunk);
         lanes::ChunkResult* result = &term.results[static_cast<size_t>(chunk)];
         if (term.assembled()) {
-          term.operations->hessian(term.stencils, range, d.x.data(), static_cast<int>(projection), scratch,
-                                   d.gradient.data(), matrix.values().data(), result);
+          term.operations->hessian(term.stencils, range, term.blocks(chunk), d.x.data(), static_cast<int>(projection),
+                                   room, d.gradient.data(), matrix.values().data(), result);
         } else {
           term.operations->gradient(term.stencils, range, d.x.data(), d.gradient.data(), result);
         }

@@ -55,11 +55,12 @@ void System::Impl::update_base(Projection projection, BlockMatrix& matrix) {
   for (SystemTerm& term : terms) {
     if (!term.constant()) continue;
     term.indefinite = 0;
-    const lanes::BlockRange all{0, term.data().blocks()};
-    lanes::ChunkResult result{};
-    term.operations->hessian(term.stencils, all, x.data(), static_cast<int>(projection), scratch[0].data(), nullptr,
-                             matrix.values().data(), &result);
-    term.indefinite = result.indefinite;
+    for (int chunk = 0; chunk < static_cast<int>(term.results.size()); ++chunk) {
+      lanes::ChunkResult result{};
+      term.operations->hessian(term.stencils, term.range(chunk), term.blocks(chunk), x.data(),
+                               static_cast<int>(projection), rooms[0].view(), nullptr, matrix.values().data(), &result);
+      term.indefinite += result.indefinite;
+    }
   }
   for (int j = 0; j < matrix.block_rows(); ++j) {
     const int stride = matrix.column_stride(j);

@@ -20,15 +20,17 @@ struct SystemTerm {
   lanes::Stencils stencils{};
 
   unsigned long coloured_stencils = 0;  // stencil_version that the colouring is of
-  int chunk_blocks = 1;
-  std::vector<int> chunks;        // in order of colour
-  std::vector<int> colour_start;  // into chunks
+  std::vector<int> chunks;              // in order of colour
+  std::vector<int> colour_start;        // into chunks
   std::vector<lanes::ChunkResult> results;
 
   unsigned long slotted_stencils = 0;  // stencil_version and pattern that the slots are of
   unsigned long slotted_pattern = 0;
-  AlignedVector<int> slots;
-  AlignedVector<int> strides;
+  AlignedVector<int> slots;  // lanes::Stencils
+  std::vector<unsigned char> turned;
+  std::vector<int> block_start;  // per chunk, into the two below: lanes::ChunkBlocks
+  std::vector<int> block_offset;
+  std::vector<int> block_stride;
 
   // A constant Hessian: the versions that the assembled base is made of.
   unsigned long based_stencils = 0;
@@ -43,6 +45,8 @@ struct SystemTerm {
   bool constant() const { return kernel().constant_hessian && !kernel().zero_hessian; }
   bool assembled() const { return !kernel().constant_hessian && !kernel().zero_hessian; }
   lanes::BlockRange range(int chunk) const;
+  lanes::ChunkBlocks blocks(int chunk) const;
+  int largest_chunk() const;  // in matrix blocks
 
   // Cuts and colours the stencils if they changed. `seen` is room for one mark per vertex.
   void colour(std::vector<int>& seen);
@@ -68,15 +72,21 @@ struct System::Impl {
   std::vector<int> base_row;        // of each block: scalar rows below the start of its column
   std::vector<double> base_values;  // 9 per block, column by column
 
-  AlignedVector<double> x;                     // 4 per vertex
-  AlignedVector<double> gradient;              // 4 per vertex
-  std::vector<AlignedVector<double>> scratch;  // per thread
+  AlignedVector<double> x;         // 4 per vertex
+  AlignedVector<double> gradient;  // 4 per vertex
+  struct Room {
+    AlignedVector<double> sums;
+    AlignedVector<double> scratch;
+    lanes::Workspace view() { return {sums.data(), scratch.data()}; }
+  };
+  std::vector<Room> rooms;  // per thread
   std::vector<int> seen;
 
-  // Brings prepared data, colouring and scratch up to date.
+  // Brings prepared data and colouring up to date.
   void prepare();
-  // Brings pattern and slots up to date.
+  // Brings pattern, slots and rooms up to date.
   void update_pattern();
+  void size_rooms();
   void build_pattern();
   // Assembles the constant Hessians again if one of them changed; uses matrix as room.
   void update_base(Projection projection, BlockMatrix& matrix);

@@ -1,6 +1,7 @@
 // What is made once per list of stencils: colouring, the matrix pattern and the places of all blocks in it.
 
 #include <fmt/format.h>
+#include <omp.h>
 
 #include <algorithm>
 
@@ -8,17 +9,20 @@
 #include "runtime/system_data.h"
 
 namespace ergon {
-namespace {
+lanes::ChunkBlocks SystemTerm::blocks(int chunk) const {
+  const int first = block_start[static_cast<size_t>(chunk)];
+  return {block_start[static_cast<size_t>(chunk) + 1] - first, block_offset.data() + first,
+          block_stride.data() + first};
+}
 
-// Enough chunks to keep many cores busy, each large enough for its vertices to be used many times.
-constexpr int kChunks = 512;
-constexpr int kSmallestChunk = 32;  // stencils
-constexpr int kLargestChunk = 512;
-
-}  // namespace
+int SystemTerm::largest_chunk() const {
+  int largest = 0;
+  for (size_t c = 1; c < block_start.size(); ++c) largest = std::max(largest, block_start[c] - block_start[c - 1]);
+  return largest;
+}
 
 lanes::BlockRange SystemTerm::range(int chunk) const {
-  return {chunk * chunk_blocks, std::min((chunk + 1) * chunk_blocks, data().blocks())};
+  return {chunk * data().chunk, std::min((chunk + 1) * data().chunk, data().blocks())};
 }
 
 void SystemTerm::colour(std::vector<int>& seen) {
@@ -30,16 +34,14 @@ void SystemTerm::colour(std::vector<int>& seen) {
                                  seen.size() - 1));
   }
   coloured_stencils = d.stencil_version;
-  const int size = std::clamp(d.count / kChunks, kSmallestChunk, kLargestChunk);
-  chunk_blocks = std::max(1, size / d.lanes);
-  const int count = (d.blocks() + chunk_blocks - 1) / chunk_blocks;
+  const int count = d.chunks();
   results.resize(static_cast<size_t>(count));
   chunks.clear();
   colour_start.assign(1, 0);
   std::fill(seen.begin(), seen.end(), 0);
   std::vector<int> waiting(static_cast<size_t>(count)), later;
   for (int c = 0; c < count; ++c) waiting[static_cast<size_t>(c)] = c;
-  const size_t per_chunk = static_cast<size_t>(chunk_blocks * d.points * d.lanes);
+  const size_t per_chunk = static_cast<size_t>(d.chunk * d.points * d.lanes);
   for (int colour = 1; !waiting.empty(); ++colour) {
     later.clear();
     for (const int chunk : waiting) {
@@ -63,32 +65,68 @@ void SystemTerm::colour(std::vector<int>& seen) {
 bool SystemTerm::find_slots(const BlockMatrix& pattern, const std::vector<int>& block_of) {
   const Potential::Impl& d = data();
   const auto n = static_cast<size_t>(d.points), width = static_cast<size_t>(d.lanes), pairs = n * (n + 1) / 2;
-  const auto blocks = static_cast<size_t>(d.blocks());
-  slots.resize(blocks * pairs * width);
-  strides.resize(blocks * n * width);
+  const auto vectors = static_cast<size_t>(d.blocks());
+  slots.resize(vectors * pairs * width);
+  turned.assign(d.kernel->density ? 0 : vectors * pairs, 0);
+  struct Found {
+    int index, offset, stride;
+  };
+  std::vector<std::vector<Found>> found(results.size());
   bool missing = false;
-#pragma omp parallel for schedule(static) reduction(|| : missing) if (d.count > 4096)
-  for (size_t block = 0; block < blocks; ++block) {
-    for (size_t l = 0; l < width; ++l) {
-      for (size_t a = 0, pair = block * pairs; a < n; ++a) {
-        const int row = block_of[static_cast<size_t>(d.vertices[(block * n + a) * width + l])];
-        strides[(block * n + a) * width + l] = row < 0 ? 0 : pattern.column_stride(row);
-        for (size_t b = 0; b <= a; ++b, ++pair) {
-          const int column = block_of[static_cast<size_t>(d.vertices[(block * n + b) * width + l])];
-          int& slot = slots[pair * width + l];
-          slot = lanes::kFixedSlot;
-          if (row < 0 || column < 0) continue;
-          const ptrdiff_t place = pattern.find(std::max(row, column), std::min(row, column));
-          missing = missing || place < 0;
-          slot = 2 * static_cast<int>(place / 3) + (row < column ? 1 : 0);
+#pragma omp parallel reduction(|| : missing) if (d.count > 4096)
+  {
+    std::vector<int> place(pattern.blocks(), -1);  // in the chunk, by index of the matrix block
+    std::vector<int> wanted;                       // index of the matrix block, by slot
+#pragma omp for schedule(static)
+    for (size_t chunk = 0; chunk < results.size(); ++chunk) {
+      const lanes::BlockRange r = range(static_cast<int>(chunk));
+      const auto first = static_cast<size_t>(r.first), last = static_cast<size_t>(r.last);
+      std::vector<Found>& list = found[chunk];
+      wanted.assign((last - first) * pairs * width, -1);
+      size_t slot = 0;
+      for (size_t vector = first; vector < last; ++vector) {
+        for (size_t a = 0; a < n; ++a) {
+          for (size_t b = 0; b <= a; ++b) {
+            for (size_t l = 0; l < width; ++l, ++slot) {
+              if (static_cast<int>(l) >= d.lanes_in(static_cast<int>(vector))) continue;
+              const int row = block_of[static_cast<size_t>(d.vertices[(vector * n + a) * width + l])];
+              const int column = block_of[static_cast<size_t>(d.vertices[(vector * n + b) * width + l])];
+              if (row < 0 || column < 0) continue;
+              if (row < column) turned[vector * pairs + a * (a + 1) / 2 + b] |= static_cast<unsigned char>(1u << l);
+              const int index = pattern.index_of(std::max(row, column), std::min(row, column));
+              missing = missing || index < 0;
+              wanted[slot] = index;
+              if (index < 0 || place[static_cast<size_t>(index)] == 0) continue;
+              place[static_cast<size_t>(index)] = 0;
+              const int j = std::min(row, column);
+              list.push_back({index, static_cast<int>(pattern.start_of(index, j)), pattern.column_stride(j)});
+            }
+          }
         }
       }
+      std::sort(list.begin(), list.end(), [](const Found& p, const Found& q) { return p.index < q.index; });
+      for (size_t i = 0; i < list.size(); ++i) place[static_cast<size_t>(list[i].index)] = static_cast<int>(i);
+      for (size_t i = 0; i < wanted.size(); ++i) {
+        const int in_chunk = wanted[i] < 0 ? static_cast<int>(list.size()) : place[static_cast<size_t>(wanted[i])];
+        slots[first * pairs * width + i] = lanes::kSumDoubles * in_chunk;
+      }
+      for (const Found& f : list) place[static_cast<size_t>(f.index)] = -1;
     }
+  }
+  block_start.assign(1, 0);
+  block_offset.clear();
+  block_stride.clear();
+  for (const std::vector<Found>& list : found) {
+    for (const Found& f : list) {
+      block_offset.push_back(f.offset);
+      block_stride.push_back(f.stride);
+    }
+    block_start.push_back(static_cast<int>(block_offset.size()));
   }
   slotted_stencils = d.stencil_version;
   slotted_pattern = missing ? 0 : pattern.pattern_id();
   stencils.slots = slots.data();
-  stencils.strides = strides.data();
+  stencils.turned = turned.data();
   return !missing;
 }
 
@@ -124,6 +162,22 @@ void System::Impl::update_pattern() {
     // A new coupling: all slots are to be found again in a pattern that has it.
     build_pattern();
     t = static_cast<size_t>(-1);
+  }
+  size_rooms();
+}
+
+void System::Impl::size_rooms() {
+  int scratch = 0, blocks = 0;
+  for (const SystemTerm& term : terms) {
+    if (term.kernel().zero_hessian) continue;
+    scratch = std::max(scratch, term.operations->scratch_size(term.stencils));
+    blocks = std::max(blocks, term.largest_chunk());
+  }
+  rooms.resize(std::max(rooms.size(), static_cast<size_t>(omp_get_max_threads())));
+  for (Room& room : rooms) {
+    const size_t sums = static_cast<size_t>(blocks + 1) * lanes::kSumDoubles;
+    if (room.sums.size() < sums) room.sums.resize(sums, 0.0);
+    if (room.scratch.size() < static_cast<size_t>(scratch)) room.scratch.resize(static_cast<size_t>(scratch));
   }
 }
 

@@ -1,6 +1,7 @@
 // The three evaluations of a range of blocks, for one vector width.
 
 #include "runtime/lanes/evaluate_hessian.h"
+#include "runtime/lanes/evaluate_projection.h"
 
 namespace ergon::lanes {
 
@@ -12,14 +13,15 @@ namespace {
 
 constexpr double kInfinity = __builtin_inf();
 
+// Lanes from this one on are padding.
 int lanes_of(const Stencils& s, int block) {
-  const int left = s.count - block * kWidth;
-  return left < kWidth ? left : kWidth;
+  const int whole = s.chunk * kWidth, first = block / s.chunk * s.chunk, left = s.count - first * kWidth;
+  if (left >= whole) return kWidth;
+  const int n = (left + kWidth - 1) / kWidth;
+  return (left - (block - first) + n - 1) / n;
 }
 
-const double* data_of(const Stencils& s, int block) {
-  return s.elements + static_cast<long>(block) * s.kernel->elements * kWidth;
-}
+constexpr int kAhead = 3;  // blocks
 
 // Sums values and finds the smallest margin over the real lanes.
 struct Tally {
@@ -49,6 +51,7 @@ void value_of(const Stencils& s, BlockRange range, const double* x, ChunkResult*
   Vector3 points[S::kMost];
   for (int block = range.first; block < range.last; ++block) {
     const int count = lanes_of(s, block);
+    if (block + kAhead < range.last) prefetch_block<S>(s, block + kAhead);
     gather_points<S>(s, block, x, points);
     Real sum = splat(0);
     for (int p = 0; p < s.quadrature; ++p) {
@@ -71,6 +74,7 @@ void gradient_of(const Stencils& s, BlockRange range, const double* x, double* g
   const int n = S::points(s);
   for (int block = range.first; block < range.last; ++block) {
     const int count = lanes_of(s, block);
+    if (block + kAhead < range.last) prefetch_block<S>(s, block + kAhead);
     gather_points<S>(s, block, x, points);
     for (int a = 0; a < n; ++a) by_point[a] = {};
     Real sum = splat(0);
@@ -92,7 +96,10 @@ constexpr int kBatchDoubles = 12288;
 
 template <class S>
 int batch_of(const Stencils& s) {
-  const int blocks = kBatchDoubles / (S::kPacked * kWidth * s.quadrature);
+  int blocks = kBatchDoubles / (S::kPacked * kWidth * s.quadrature);
+  if (blocks * s.quadrature > ProjectionBatch<S::kSize>::kCapacity) {
+    blocks = ProjectionBatch<S::kSize>::kCapacity / s.quadrature;
+  }
   return blocks < 1 ? 1 : blocks;
 }
 
@@ -103,20 +110,21 @@ int scratch_of(const Stencils& s) {
 }
 
 template <class S>
-void hessian_of(const Stencils& s, BlockRange range, const double* x, int projection, double* scratch, double* gradient,
-                double* values, ChunkResult* result) {
+void hessian_of(const Stencils& s, BlockRange range, const ChunkBlocks& blocks, const double* x, int projection,
+                const Workspace& room, double* gradient, double* values, ChunkResult* result) {
   Tally tally;
   alignas(64) double q[S::kSize * kWidth], value[kWidth], by_q[S::kSize * kWidth];
   Vector3 points[S::kMost], by_point[S::kMost];
-  const int n = S::points(s), batch = batch_of<S>(s), size = S::kPacked * kWidth;
+  const int n = S::points(s), pairs = n * (n + 1) / 2, batch = batch_of<S>(s), size = S::kPacked * kWidth;
   const bool project = projection != kProjectNone && !s.kernel->psd_hessian;
-  ProjectionQueue<S::kSize> queue(projection == kProjectAbsolute ? Negative::absolute : Negative::clamp);
-  double* element = scratch + static_cast<long>(batch) * s.quadrature * size;
+  ProjectionBatch<S::kSize> indefinite(projection == kProjectAbsolute ? Negative::absolute : Negative::clamp);
+  double* element = room.scratch + static_cast<long>(batch) * s.quadrature * size;
   for (int first = range.first; first < range.last; first += batch) {
     const int last = first + batch < range.last ? first + batch : range.last;
-    double* packed = scratch;
+    double* packed = room.scratch;
     for (int block = first; block < last; ++block) {
       const int count = lanes_of(s, block);
+      if (block + kAhead < range.last) prefetch_block<S>(s, block + kAhead);
       gather_points<S>(s, block, x, points);
       for (int a = 0; a < n; ++a) by_point[a] = {};
       Real sum = splat(0);
@@ -126,18 +134,21 @@ void hessian_of(const Stencils& s, BlockRange range, const double* x, int projec
         s.kernel->hessian(q, data_of(s, block), s.uniforms, value, by_q, packed);
         sum += w.times_volume(load(value));
         chain_gradient<S>(s, w, by_q, by_point);
-        if (project) queue.add(packed, ~definite<S::kSize>(packed) & ((1u << count) - 1));
+        if (project) indefinite.add(packed, ~definite<S::kSize>(packed) & ((1u << count) - 1));
       }
       tally.add(sum, count);
       if (gradient != nullptr) scatter_points<S>(s, block, count, by_point, gradient);
     }
-    queue.flush();
-    packed = scratch;
+    indefinite.run();
+    packed = room.scratch;
     for (int block = first; block < last; ++block, packed += s.quadrature * size) {
-      chain_hessian<S>(s, block, lanes_of(s, block), packed, element, values);
+      if (block + 1 < last) prefetch(s.slots + (block + 1L) * pairs * kWidth, 4L * kWidth * pairs);
+      element_matrix<S>(s, block, packed, element);
+      add_element<S>(s, block, element, room.sums);
     }
   }
-  *result = tally.result(queue.changed());
+  flush_sums(room.sums, blocks, values);
+  *result = tally.result(indefinite.changed());
 }
 
 const LaneOperations kOperations = {
@@ -148,9 +159,10 @@ const LaneOperations kOperations = {
     [](const Stencils& s, BlockRange range, const double* x, double* gradient, ChunkResult* result) {
       with_shape(s, [&]<class S>(S) { gradient_of<S>(s, range, x, gradient, result); });
     },
-    [](const Stencils& s, BlockRange range, const double* x, int projection, double* scratch, double* gradient,
-       double* values, ChunkResult* result) {
-      with_shape(s, [&]<class S>(S) { hessian_of<S>(s, range, x, projection, scratch, gradient, values, result); });
+    [](const Stencils& s, BlockRange range, const ChunkBlocks& blocks, const double* x, int projection,
+       const Workspace& room, double* gradient, double* values, ChunkResult* result) {
+      with_shape(s,
+                 [&]<class S>(S) { hessian_of<S>(s, range, blocks, x, projection, room, gradient, values, result); });
     }};
 
 }  // namespace

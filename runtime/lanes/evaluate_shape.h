@@ -39,6 +39,10 @@ auto with_shape(const Stencils& s, F f) {
   return f(Shape<0, 4, false>{});
 }
 
+inline const double* data_of(const Stencils& s, int block) {
+  return s.elements + static_cast<long>(block) * s.kernel->elements * kWidth;
+}
+
 template <class S, bool = S::kDensity>
 class Weights;
 
@@ -61,7 +65,6 @@ class Weights<S, true> {
     volume_ = load(s.volumes + place * kWidth);
   }
   Real at(int k, int a) const { return weight_[k][a]; }
-  static constexpr bool zero(int, int) { return false; }
   Real times_volume(Real a) const { return a * volume_; }
 
  private:
@@ -74,14 +77,33 @@ template <class S>
 class Weights<S, false> {
  public:
   Weights(const Stencils& s, int, int) : weight_(s.kernel->weights), points_(S::points(s)) {}
-  double at(int k, int a) const { return weight_[k * points_ + a]; }
-  bool zero(int k, int a) const { return at(k, a) == 0; }
+  Real at(int k, int a) const { return splat(weight_[k * points_ + a]); }
   static Real times_volume(Real a) { return a; }
 
  private:
   const double* weight_;
   int points_;
 };
+
+inline void prefetch(const void* first, long bytes) {
+  for (long at = 0; at < bytes; at += 64) __builtin_prefetch(static_cast<const char*>(first) + at);
+}
+
+// Asks for the data of a block that will be evaluated soon: chunks of a colour lie far apart, so the processor does not
+// see the next one coming.
+template <class S>
+inline void prefetch_block(const Stencils& s, int block) {
+  const int n = S::points(s);
+  const long vector = 8L * kWidth, points = static_cast<long>(block) * n * kWidth;
+  const long places = static_cast<long>(block) * s.quadrature;
+  prefetch(s.vertices + points, 4L * kWidth * n);
+  if constexpr (S::kDensity) {
+    const long weights = vector * S::kVectors * (n - 1);
+    prefetch(s.weights + places * (weights / 8), weights * s.quadrature);
+    prefetch(s.volumes + places * kWidth, vector * s.quadrature);
+  }
+  prefetch(data_of(s, block), vector * s.kernel->elements);
+}
 
 template <class S>
 inline void gather_points(const Stencils& s, int block, const double* x, Vector3* points) {
@@ -103,7 +125,6 @@ inline void form_q(const Stencils& s, const Weights<S>& w, const Vector3* points
   for (int k = 0; k < S::kVectors; ++k) {
     Real sum[3] = {splat(0), splat(0), splat(0)};
     for (int a = 0; a < n; ++a) {
-      if (w.zero(k, a)) continue;
       for (int c = 0; c < 3; ++c) sum[c] += w.at(k, a) * points[a].c[c];
     }
     for (int c = 0; c < 3; ++c) store(q + (3 * k + c) * kWidth, sum[c]);

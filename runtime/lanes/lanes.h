@@ -11,31 +11,48 @@ namespace ergon::lanes {
 
 constexpr int kMaxPoints = 27;    // of a stencil or element
 constexpr int kMaxVectors = 4;    // 3-vectors in q
-constexpr int kFixedSlot = -1;    // a pair with a fixed vertex
 constexpr int kProjectClamp = 0;  // what is done to negative eigenvalues; the order of ergon::Projection
 constexpr int kProjectAbsolute = 1;
 constexpr int kProjectNone = 2;
 
-// All stencils of one potential, padded to whole blocks by repeating the last one.
+// All stencils of one potential, in chunks of `chunk` blocks. Within a chunk of n blocks, stencil i is in lane i/n of
+// block i%n; lanes left over repeat the last stencil.
 struct Stencils {
   const ErgonKernel* kernel;
-  int count;       // real stencils
-  int points;      // per stencil
-  int quadrature;  // points of quadrature per stencil
+  int chunk;
+  int count;               // real stencils
+  int points;              // per stencil
+  int quadrature;          // points of quadrature per stencil
   const int* vertices;     // [block][points][W]; a density's points stand in ascending order of vertex
   const double* weights;   // density: [block][quadrature][q_vectors][points - 1][W]; the last is minus their sum
   const double* volumes;   // density: [block][quadrature][W]
   const double* elements;  // [block][kernel->elements][W]
   const double* uniforms;  // [kernel->uniforms]
-  // Where the 3x3 block of points (a, b <= a) is added, at a*(a + 1)/2 + b of [block][pairs][W]: kFixedSlot, or
-  // 2*(offset/3) + t, where t = 1 when the block's row in the matrix is that of b.
+  // Where among the sums of its chunk the 3x3 block of points (a, b <= a) is added, at a*(a + 1)/2 + b of
+  // [block][pairs][W], in doubles; behind the last for a pair with a fixed vertex and for padding.
   const int* slots;
-  const int* strides;  // [block][points][W]: doubles from column to column of the point's block column
+  // [block][pairs]: bit l is set when in lane l the block's row in the matrix is that of b. Null for a density.
+  const unsigned char* turned;
 };
 
 struct BlockRange {
   int first;
   int last;
+};
+
+// The blocks of the matrix that a chunk adds to, in the order of the matrix.
+struct ChunkBlocks {
+  int count;
+  const int* offset;  // of the block's first value
+  const int* stride;  // from one of its columns to the next
+};
+
+constexpr int kSumDoubles = 12;  // of one matrix block while a chunk is summed: three columns of four
+
+// Room of one thread, aligned to 64 bytes.
+struct Workspace {
+  double* sums;     // kSumDoubles for each matrix block of a chunk and one more; zero before and after
+  double* scratch;  // scratch_size
 };
 
 struct ChunkResult {
@@ -46,13 +63,12 @@ struct ChunkResult {
 
 struct LaneOperations {
   int lanes;
-  // Doubles of scratch (aligned to 64 bytes) that `hessian` needs.
-  int (*scratch_size)(const Stencils&);
+  int (*scratch_size)(const Stencils&);  // doubles
   void (*value)(const Stencils&, BlockRange, const double* x, ChunkResult*);
   void (*gradient)(const Stencils&, BlockRange, const double* x, double* gradient, ChunkResult*);
   // Adds to gradient (unless it is null) and to the matrix values.
-  void (*hessian)(const Stencils&, BlockRange, const double* x, int projection, double* scratch, double* gradient,
-                  double* values, ChunkResult*);
+  void (*hessian)(const Stencils&, BlockRange, const ChunkBlocks&, const double* x, int projection, const Workspace&,
+                  double* gradient, double* values, ChunkResult*);
 };
 
 // The widest vectors this machine has.
