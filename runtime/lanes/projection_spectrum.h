@@ -213,6 +213,8 @@ void project_lanes(double* packed, Negative mode, unsigned lanes) {
     project_1(packed, mode == Negative::absolute, lanes);
   } else if constexpr (N == 2) {
     project_2(packed, mode == Negative::absolute, lanes);
+  } else if constexpr (N == 3) {
+    project_3(packed, mode == Negative::absolute, lanes);
   } else {
     project_by_tridiagonal<N>(packed, mode, lanes);
   }
