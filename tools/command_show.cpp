@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <ostream>
 
@@ -39,6 +40,9 @@ void show_cost(const Energy& energy, const std::string& case_name, std::ostream&
       n.divisions, n.roots, n.calls, n.uniforms, n.elements,
       energy.kind == Energy::Kind::density ? "F" : "a vector of differences", kernel.module.q_size(),
       structure_of(kernel.module));
+  out << fmt::format("  {} lines of C++ for {} lanes: ergon show {}{} --source\n",
+                     std::count(kernel.source.begin(), kernel.source.end(), '\n'), lanes::best_lanes(), energy.file,
+                     case_name.empty() ? "" : " --case " + case_name);
 }
 
 int show(const Options& options, std::ostream& out) {
