@@ -219,6 +219,11 @@ void Potential::set_stencils(std::vector<int> stencils, const Eigen::Matrix3Xd& 
       d.fail(fmt::format("stencil {} names vertex {}; vertices are 0 to {}", i / static_cast<size_t>(d.points),
                          stencils[i], X.cols() - 1));
     }
+    const size_t first = i - i % static_cast<size_t>(d.points);
+    for (size_t k = first; k < i; ++k) {
+      if (stencils[k] != stencils[i]) continue;
+      d.fail(fmt::format("stencil {} names vertex {} twice", i / static_cast<size_t>(d.points), stencils[i]));
+    }
   }
   d.stencils = std::move(stencils);
   d.count = static_cast<int>(d.stencils.size()) / d.points;

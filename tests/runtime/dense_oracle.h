@@ -4,6 +4,8 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 #include "runtime/block_matrix.h"
 #include "runtime/mesh/element.h"
@@ -29,13 +31,15 @@ struct Dense {
     constexpr int kSize = 3 * Law::kVectors;
     using J = Jet<kSize>;
     const auto points = weights.cols();
-    Eigen::MatrixXd B = Eigen::MatrixXd::Zero(kSize, gradient.size());
+    Eigen::MatrixXd B = Eigen::MatrixXd::Zero(kSize, 3 * points);
+    Eigen::VectorXd local(3 * points);
+    std::vector<int> rows;
     for (Eigen::Index a = 0; a < points; ++a) {
-      for (int k = 0; k < Law::kVectors; ++k) {
-        for (int c = 0; c < 3; ++c) B(3 * k + c, 3 * vertices[a] + c) += weights(k, a);
-      }
+      for (int k = 0; k < Law::kVectors; ++k) B.block<3, 3>(3 * k, 3 * a) = weights(k, a) * Eigen::Matrix3d::Identity();
+      local.segment<3>(3 * a) = x.col(vertices[a]);
+      for (int c = 0; c < 3; ++c) rows.push_back(3 * vertices[a] + c);
     }
-    const Eigen::VectorXd q = B * x.reshaped();
+    const Eigen::VectorXd q = B * local;
     J variables[kSize];
     for (int i = 0; i < kSize; ++i) variables[i] = J::variable(q(i), i);
     const J psi = Law::psi(variables, data, params);
@@ -48,8 +52,8 @@ struct Dense {
       H = eigen.eigenvectors() * kept.asDiagonal() * eigen.eigenvectors().transpose();
     }
     value += volume * psi.v;
-    gradient += volume * (B.transpose() * psi.g);
-    hessian += volume * (B.transpose() * H * B);
+    gradient(rows) += volume * (B.transpose() * psi.g);
+    hessian(rows, rows) += volume * (B.transpose() * H * B);
   }
 
   // A stencil energy; data: Law::kRaw values per stencil.
