@@ -10,6 +10,10 @@ struct ProjectionTable {
   double definite_tolerance[kLargest + 1] = {};
   unsigned (*definite[kLargest + 1])(const double* packed) = {};
   void (*project[kLargest + 1])(double* packed, bool absolute, unsigned lanes) = {};
+  // F, U, V column by column: f[9][lanes] -> u[9][lanes], s[3][lanes], v[9][lanes]; see svd3 in runtime/lanes/svd3.h.
+  void (*svd3)(const double* f, double* u, double* s, double* v) = nullptr;
+  // stretch[6], twist[3], flip[3] -> packed[45]; see runtime/lanes/projection_isotropic.h. Returns the changed lanes.
+  unsigned (*isotropic)(const double* f, const double* blocks, bool absolute, double* packed) = nullptr;
 };
 
 // Throws std::invalid_argument when this machine or build lacks that width.
