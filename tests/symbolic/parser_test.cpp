@@ -201,16 +201,5 @@ TEST(EnergyFiles, WindowsLineEndsChangeNothing) {
   }
 }
 
-TEST(Language, EveryFunctionAndStencilIsInItsReference) {
-  const std::string page = test::contents(ERGON_SOURCE_DIR "/symbolic/README.md");
-  for (const std::string& name : function_names())
-    EXPECT_TRUE(page.find("`" + name + "`") != std::string::npos || page.find("`" + name + "(") != std::string::npos)
-        << name;
-  for (const std::string& name : stencil_names()) {
-    const std::string line = "`" + name + "` " + std::to_string(points_of_stencil(name));
-    EXPECT_NE(page.find(line), std::string::npos) << line;
-  }
-}
-
 }  // namespace
 }  // namespace ergon

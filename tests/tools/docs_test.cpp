@@ -81,6 +81,27 @@ TEST_F(Docs, FoldersAndFilesThatAreNamedExist) {
   }
 }
 
+TEST_F(Docs, TheEmittedCodeInTheReadmeIsWhatIsEmitted) {
+  const std::vector<std::string> shown = blocks(file_text("README.md"), "cpp");
+  ASSERT_EQ(shown.size(), 1u);
+  const Answer answer = ergon("show stable_neo_hookean --source");
+  ASSERT_EQ(answer.code, 0) << answer.err;
+  EXPECT_NE(answer.out.find(shown[0]), std::string::npos) << answer.out;
+}
+
+TEST_F(Docs, EveryProcessEmitsTheSameBytes) {
+  int energies = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(ERGON_SOURCE_DIR "/energies")) {
+    if (entry.path().extension() != ".energy") continue;
+    ++energies;
+    const std::string command = "show '" + entry.path().string() + "' --source";
+    const std::string first = ergon(command).out;
+    EXPECT_NE(first.find("hessian_entry"), std::string::npos) << entry.path();
+    EXPECT_EQ(ergon(command).out, first) << entry.path();
+  }
+  EXPECT_GE(energies, 9);
+}
+
 // Every command in the README's shell blocks, in a folder that holds the repository's energies and scenes.
 class SlowReadme : public CommandTest {};
 
