@@ -96,8 +96,7 @@ TEST_P(IsotropicTest, AgreesWithTheProjectedDenseHessian) {
       const long double norm = oracle.eigenvalues().cwiseAbs().maxCoeff();
       const auto kept = absolute ? oracle.eigenvalues().cwiseAbs().eval() : oracle.eigenvalues().cwiseMax(0).eval();
       const Exact9 expected = oracle.eigenvectors() * kept.asDiagonal() * oracle.eigenvectors().transpose();
-      // Two roundings meet here: that of the decomposition and, multiplied by F, that of the law's own evaluation.
-      ASSERT_LE((h.cast<long double>() - expected).norm(), 2e-14L * norm) << states[lane];
+      ASSERT_LE((h.cast<long double>() - expected).norm(), 1e-14L * norm) << states[lane];
       if (std::abs(oracle.eigenvalues().minCoeff()) > 1e-12L * norm) {
         ASSERT_EQ(changed >> lane & 1, oracle.eigenvalues().minCoeff() < 0) << states[lane];
         ++(changed >> lane & 1 ? changed_count : kept_count);
