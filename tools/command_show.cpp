@@ -28,7 +28,13 @@ std::string structure_of(const Module& module) {
   return text;
 }
 
-void show_cost(const Energy& energy, const std::string& case_name, std::ostream& out) {
+// The functions of an emitted file, without its header, interface and tables.
+std::string functions_of(const std::string& source) {
+  const size_t first = source.find("static void prepare_uniforms");
+  return source.substr(first, source.find("static const ErgonInput inputs") - first);
+}
+
+void show_kernel(const Energy& energy, const std::string& case_name, std::ostream& out) {
   const Generated kernel = generate(energy, compile_options(case_name, lanes::best_lanes()));
   const OperationCounts& n = kernel.counts;
   out << fmt::format(
@@ -40,9 +46,11 @@ void show_cost(const Energy& energy, const std::string& case_name, std::ostream&
       n.divisions, n.roots, n.calls, n.uniforms, n.elements,
       energy.kind == Energy::Kind::density ? "F" : "a vector of differences", kernel.module.q_size(),
       structure_of(kernel.module));
-  out << fmt::format("  {} lines of C++ for {} lanes: ergon show {}{} --source\n",
-                     std::count(kernel.source.begin(), kernel.source.end(), '\n'), lanes::best_lanes(), energy.file,
-                     case_name.empty() ? "" : " --case " + case_name);
+  const std::string kernel_functions = functions_of(kernel.source);
+  out << fmt::format("\nemitted for {} lanes, {} of {} lines (the whole file: ergon show {}{} --source)\n\n{}",
+                     lanes::best_lanes(), std::count(kernel_functions.begin(), kernel_functions.end(), '\n'),
+                     std::count(kernel.source.begin(), kernel.source.end(), '\n'), energy.file,
+                     case_name.empty() ? "" : " --case " + case_name, kernel_functions);
 }
 
 int show(const Options& options, std::ostream& out) {
@@ -62,19 +70,19 @@ int show(const Options& options, std::ostream& out) {
   if (!energy.summary.empty()) out << energy.summary << '\n';
   if (!energy.cite.empty()) out << energy.cite << '\n';
   out << '\n' << symbol_table(energy) << '\n' << formula_text(energy) << '\n';
-  for (const std::string& name : cases) show_cost(energy, name, out);
+  for (const std::string& name : cases) show_kernel(energy, name, out);
   return exit_done;
 }
 
 }  // namespace
 
 void add_show_command(CLI::App& app, Run& run) {
-  CLI::App* command = app.add_subcommand("show", "Prints an energy's formula, symbols, units and cost");
+  CLI::App* command = app.add_subcommand("show", "Prints an energy's formula, symbols, units, cost and emitted kernel");
   auto options = std::make_shared<Options>();
   command->add_option("energy", options->energy, "an .energy file, or a name in the catalogue")->required();
   command->add_option("--case", options->case_name, "this case only");
   command->add_flag("--latex", options->latex, "the formula in LaTeX");
-  command->add_flag("--source", options->source, "the C++ that is emitted for it");
+  command->add_flag("--source", options->source, "only the C++ that is emitted for it, as a whole file");
   command->callback([options, &run] { run = [options](std::ostream& out) { return show(*options, out); }; });
 }
 
