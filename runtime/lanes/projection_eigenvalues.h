@@ -36,6 +36,8 @@ inline Characteristic characteristic(const Real* d, const Real* squares, Real x)
 }
 
 // The length of the step of multiplicity r, upwards for side = 1 and downwards for side = -1.
+// With y_i = 1/(x_i - x) over the eigenvalues x_i, of which r have y_i >= y: given the sums of y_i and y_i^2, y is
+// largest when these r are equal and so are the others, and 1/y is the step.
 template <int N>
 inline Real laguerre_step(const Characteristic& f, Real r, Real side) {
   Real discriminant = (N - 1.0) * f.p1 * f.p1 - (2.0 * N) * f.p2 * f.p;

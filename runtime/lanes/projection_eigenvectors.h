@@ -1,7 +1,8 @@
 #pragma once
 // Eigenvectors of a symmetric tridiagonal matrix per lane, from twisted factorisations (Dhillon and Parlett 2004,
-// Multiple representations to compute orthogonal eigenvectors of symmetric tridiagonal matrices, section 4.1; the twist
-// is where the factorisation's residual is least). It establishes what each vector's residual is.
+// Multiple representations to compute orthogonal eigenvectors of symmetric tridiagonal matrices, Linear Algebra Appl.
+// 387): the factorisations from the first row down and from the last row up meet in the row where their residual gamma
+// is least, and (T - x) z = gamma e there. It establishes what each vector's residual is.
 
 #include "runtime/lanes/projection_vector.h"
 

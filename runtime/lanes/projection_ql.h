@@ -1,6 +1,6 @@
 #pragma once
 // All eigenvalues and eigenvectors of a symmetric tridiagonal matrix per lane, by QL with explicit shifts (Parlett
-// 1998, The Symmetric Eigenvalue Problem, section 8). It establishes eigenvectors orthogonal to rounding whatever the
+// 1998, The Symmetric Eigenvalue Problem, chapter 8). It establishes eigenvectors orthogonal to rounding whatever the
 // eigenvalues are. Lanes need no masks: an off-diagonal entry set to zero splits the matrix, and a sweep acts on each
 // part.
 
