@@ -2,8 +2,8 @@
 // The Hessian of an isotropic density from the function g(s0, s1, s2) of the singular values that it is: projection of
 // its blocks and rotation to the frame of F. Included only by files in runtime/lanes.
 //
-// Source: Smith, de Goes, Kim 2019, Analytic eigensystems for isotropic distortion energies, TOG 38(1), sections 4
-// and 5. With F = U diag(s) V' and E(i, j) = u[i] v[j]', the Hessian is
+// Source: Smith, de Goes, Kim 2019, Analytic eigensystems for isotropic distortion energies, TOG 38(1).
+// With F = U diag(s) V' and E(i, j) = u[i] v[j]', the Hessian is
 //   stretch: sum over i, j of g_ij E(i, i) E(j, j)', g_ij the second derivatives of g;
 //   twist:   eigenvector (E(i, j) - E(j, i))/sqrt(2), eigenvalue (g_i + g_j)/(s_i + s_j);
 //   flip:    eigenvector (E(i, j) + E(j, i))/sqrt(2), eigenvalue (g_i - g_j)/(s_i - s_j), g_ii - g_ij where s_i = s_j.
