@@ -67,7 +67,7 @@ inline unsigned lowest_eigenvalues(const Real* d, const Real* squares, Real boun
     }
   }
   unsigned any_open = 0;
-  for (int iteration = 0; iteration < 20; ++iteration) {
+  for (int iteration = 0; iteration < 12; ++iteration) {
     any_open = 0;
     for (int j = 0; j < count; ++j) {
       if (open[j] == 0) continue;

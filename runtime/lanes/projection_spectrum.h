@@ -115,7 +115,7 @@ inline unsigned find_lowest_pairs(const Oriented<N>& o, LowestPairs<N>& pairs) {
     for (int j = 0; j < pairs.count; ++j) {
       const TwistedResult t = twisted_eigenvector<N>(o.d, o.e, o.squares, pairs.x[j], pairs.z[j]);
       const Mask wanted = from_bits(pairs.wanted[j]);
-      inaccurate |= pairs.wanted[j] & ~bits(less(t.residual, 3e-16 * o.norm));
+      inaccurate |= pairs.wanted[j] & ~bits(less(t.residual, 8e-16 * o.norm));
       pairs.x[j] = select(wanted, pairs.x[j] + t.correction, splat(0));
       failed |= pairs.wanted[j] & ~bits(less(pairs.x[j], o.noise));
     }
