@@ -16,7 +16,7 @@ namespace {
 // Enough chunks to keep many cores busy, each large enough for its vertices to be used many times.
 constexpr int kChunks = 192;
 constexpr int kSmallestChunk = 64;  // stencils
-constexpr int kLargestChunk = 1024;
+constexpr int kLargestChunk = 512;
 
 int size_of(const ErgonInput& input) { return input.rows * input.cols; }
 

@@ -5,7 +5,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <numeric>
-#include <stdexcept>
 
 #include "runtime/error.h"
 #include "runtime/mesh/element.h"
@@ -89,7 +88,6 @@ Potential Potential::on_mesh(std::string name, Kernel kernel, const Mesh& mesh, 
   }
   const CellRule rule = rule_of(mesh.element);
   const int n = nodes_of(mesh.element);
-  if (rule.weights.size() > lanes::kMaxQuadrature) throw std::logic_error("on_mesh: too many points of quadrature");
   d.points = n;
   d.quadrature = static_cast<int>(rule.weights.size());
   d.count = mesh.cell_count();

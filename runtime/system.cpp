@@ -16,6 +16,17 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Stencil points below which starting the threads costs more than they save.
 constexpr long kWorthThreads = 8192;
 
+// Runs f(chunk) for all chunks of a term, colour by colour. Called by all threads of a team.
+template <class F>
+void over_colours(const SystemTerm& term, F f) {
+  for (size_t colour = 0; colour + 1 < term.colour_start.size(); ++colour) {
+#pragma omp for schedule(dynamic, 1)
+    for (int c = term.colour_start[colour]; c < term.colour_start[colour + 1]; ++c) {
+      f(term.chunks[static_cast<size_t>(c)]);
+    }
+  }
+}
+
 }  // namespace
 
 System::System(int vertices) : impl(std::make_shared<Impl>()) {
@@ -53,12 +64,10 @@ int System::add(Potential potential) {
   return potential_count() - 1;
 }
 
-void System::Impl::prepare(const Eigen::Matrix3Xd& positions) {
-  if (positions.cols() != vertices) throw std::invalid_argument("System: one position per vertex is needed");
+void System::Impl::prepare() {
   for (SystemTerm& term : terms) {
     term.data().prepare();
     term.colour(seen);
-    term.start();
     term.stencils = term.data().view();
     term.stencils.slots = term.slots.data();
     term.stencils.turned = term.turned.data();
@@ -72,7 +81,8 @@ bool System::Impl::worth_threads() const {
 }
 
 void System::Impl::load_positions(const Eigen::Matrix3Xd& positions) {
-#pragma omp for schedule(static)
+  if (positions.cols() != vertices) throw std::invalid_argument("System: one position per vertex is needed");
+#pragma omp parallel for schedule(static) if (vertices > kWorthThreads)
   for (int v = 0; v < vertices; ++v) {
     for (int c = 0; c < 3; ++c) x[4 * static_cast<size_t>(v) + static_cast<size_t>(c)] = positions(c, v);
   }
@@ -101,16 +111,14 @@ Evaluation System::Impl::sum(bool margins) const {
 
 Evaluation System::value(const Eigen::Matrix3Xd& x) {
   Impl& d = *impl;
-  d.prepare(x);
+  d.prepare();
+  d.load_positions(x);
 #pragma omp parallel if (d.worth_threads())
-  {
-    d.load_positions(x);
-    for (SystemTerm& term : d.terms) {
+  for (SystemTerm& term : d.terms) {
 #pragma omp for schedule(dynamic, 1) nowait
-      for (size_t chunk = 0; chunk < term.results.size(); ++chunk) {
-        const lanes::BlockRange range = term.range(static_cast<int>(chunk));
-        term.operations->value(term.stencils, range, d.x.data(), &term.results[chunk]);
-      }
+    for (size_t chunk = 0; chunk < term.results.size(); ++chunk) {
+      const lanes::BlockRange range = term.range(static_cast<int>(chunk));
+      term.operations->value(term.stencils, range, d.x.data(), &term.results[chunk]);
     }
   }
   return d.sum(true);
@@ -118,15 +126,15 @@ Evaluation System::value(const Eigen::Matrix3Xd& x) {
 
 Evaluation System::gradient(const Eigen::Matrix3Xd& x, Eigen::Matrix3Xd& gradient) {
   Impl& d = *impl;
-  d.prepare(x);
+  d.prepare();
+  d.load_positions(x);
   gradient.resize(3, d.vertices);
 #pragma omp parallel if (d.worth_threads())
   {
-#pragma omp for schedule(static) nowait
+#pragma omp for schedule(static)
     for (size_t i = 0; i < d.gradient.size(); ++i) d.gradient[i] = 0;
-    d.load_positions(x);
     for (SystemTerm& term : d.terms) {
-      term.run([&](int chunk) {
+      over_colours(term, [&](int chunk) {
         term.operations->gradient(term.stencils, term.range(chunk), d.x.data(), d.gradient.data(),
                                   &term.results[static_cast<size_t>(chunk)]);
       });
@@ -142,23 +150,23 @@ Evaluation System::gradient(const Eigen::Matrix3Xd& x, Eigen::Matrix3Xd& gradien
 Evaluation System::hessian(const Eigen::Matrix3Xd& x, Projection projection, Eigen::Matrix3Xd& gradient,
                            BlockMatrix& matrix) {
   Impl& d = *impl;
-  d.prepare(x);
+  d.prepare();
+  d.load_positions(x);
   d.update_pattern();
   if (matrix.pattern_id() != d.pattern.pattern_id()) {
     matrix = d.pattern;
     matrix.values().assign(matrix.row_index().size(), 0.0);
   }
-  d.update_base(x, projection, matrix);
+  d.update_base(projection, matrix);
   gradient.resize(3, d.vertices);
 #pragma omp parallel if (d.worth_threads())
   {
     const lanes::Workspace room = d.rooms[static_cast<size_t>(omp_get_thread_num())].view();
 #pragma omp for schedule(static) nowait
     for (size_t i = 0; i < d.gradient.size(); ++i) d.gradient[i] = 0;
-    d.load_positions(x);
     d.start_matrix(matrix);
     for (SystemTerm& term : d.terms) {
-      term.run([&](int chunk) {
+      over_colours(term, [&](int chunk) {
         const lanes::BlockRange range = term.range(chunk);
         lanes::ChunkResult* result = &term.results[static_cast<size_t>(chunk)];
         if (term.assembled()) {

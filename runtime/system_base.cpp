@@ -38,7 +38,7 @@ bool SystemTerm::constant_changed() {
   return changed;
 }
 
-void System::Impl::update_base(const Eigen::Matrix3Xd& positions, Projection projection, BlockMatrix& matrix) {
+void System::Impl::update_base(Projection projection, BlockMatrix& matrix) {
   bool changed = !base_known || projection != base_projection;
   for (SystemTerm& term : terms) {
     if (term.constant() && term.constant_changed()) changed = true;
@@ -51,7 +51,6 @@ void System::Impl::update_base(const Eigen::Matrix3Xd& positions, Projection pro
   base_start.assign(static_cast<size_t>(matrix.block_rows()) + 1, 0);
   if (std::none_of(terms.begin(), terms.end(), [](const SystemTerm& t) { return t.constant(); })) return;
 
-  load_positions(positions);
   matrix.set_zero();
   for (SystemTerm& term : terms) {
     if (!term.constant()) continue;

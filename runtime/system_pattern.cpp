@@ -37,6 +37,7 @@ void SystemTerm::colour(std::vector<int>& seen) {
   const int count = d.chunks();
   results.resize(static_cast<size_t>(count));
   chunks.clear();
+  colour_start.assign(1, 0);
   std::fill(seen.begin(), seen.end(), 0);
   std::vector<int> waiting(static_cast<size_t>(count)), later;
   for (int c = 0; c < count; ++c) waiting[static_cast<size_t>(c)] = c;
@@ -56,25 +57,8 @@ void SystemTerm::colour(std::vector<int>& seen) {
       for (const int* v = begin; v != end; ++v) seen[static_cast<size_t>(*v)] = colour;
       chunks.push_back(chunk);
     }
+    colour_start.push_back(static_cast<int>(chunks.size()));
     waiting.swap(later);
-  }
-
-  awaited_start.assign(1, 0);
-  awaited.clear();
-  done.assign(chunks.size(), round);
-  std::fill(seen.begin(), seen.end(), -1);
-  for (size_t place = 0; place < chunks.size(); ++place) {
-    const size_t first = static_cast<size_t>(chunks[place]) * per_chunk;
-    const size_t last = std::min(first + per_chunk, d.vertices.size());
-    for (size_t v = first; v < last; ++v) {
-      int& before = seen[static_cast<size_t>(d.vertices[v])];
-      if (before >= 0 && before != static_cast<int>(place)) awaited.push_back(before);
-      before = static_cast<int>(place);
-    }
-    const auto added = awaited.begin() + awaited_start.back();
-    std::sort(added, awaited.end());
-    awaited.erase(std::unique(added, awaited.end()), awaited.end());
-    awaited_start.push_back(static_cast<int>(awaited.size()));
   }
 }
 

@@ -21,6 +21,8 @@ int lanes_of(const Stencils& s, int block) {
   return (left - (block - first) + n - 1) / n;
 }
 
+constexpr int kAhead = 3;  // blocks
+
 // Sums values and finds the smallest margin over the real lanes.
 struct Tally {
   double value = 0;
@@ -49,6 +51,7 @@ void value_of(const Stencils& s, BlockRange range, const double* x, ChunkResult*
   Vector3 points[S::kMost];
   for (int block = range.first; block < range.last; ++block) {
     const int count = lanes_of(s, block);
+    if (block + kAhead < range.last) prefetch_block<S>(s, block + kAhead);
     gather_points<S>(s, block, x, points);
     Real sum = splat(0);
     for (int p = 0; p < s.quadrature; ++p) {
@@ -71,6 +74,7 @@ void gradient_of(const Stencils& s, BlockRange range, const double* x, double* g
   const int n = S::points(s);
   for (int block = range.first; block < range.last; ++block) {
     const int count = lanes_of(s, block);
+    if (block + kAhead < range.last) prefetch_block<S>(s, block + kAhead);
     gather_points<S>(s, block, x, points);
     for (int a = 0; a < n; ++a) by_point[a] = {};
     Real sum = splat(0);
@@ -111,7 +115,7 @@ void hessian_of(const Stencils& s, BlockRange range, const ChunkBlocks& blocks, 
   Tally tally;
   alignas(64) double q[S::kSize * kWidth], value[kWidth], by_q[S::kSize * kWidth];
   Vector3 points[S::kMost], by_point[S::kMost];
-  const int n = S::points(s), batch = batch_of<S>(s), size = S::kPacked * kWidth;
+  const int n = S::points(s), pairs = n * (n + 1) / 2, batch = batch_of<S>(s), size = S::kPacked * kWidth;
   const bool project = projection != kProjectNone && !s.kernel->psd_hessian;
   ProjectionBatch<S::kSize> indefinite(projection == kProjectAbsolute ? Negative::absolute : Negative::clamp);
   double* element = room.scratch + static_cast<long>(batch) * s.quadrature * size;
@@ -120,6 +124,7 @@ void hessian_of(const Stencils& s, BlockRange range, const ChunkBlocks& blocks, 
     double* packed = room.scratch;
     for (int block = first; block < last; ++block) {
       const int count = lanes_of(s, block);
+      if (block + kAhead < range.last) prefetch_block<S>(s, block + kAhead);
       gather_points<S>(s, block, x, points);
       for (int a = 0; a < n; ++a) by_point[a] = {};
       Real sum = splat(0);
@@ -137,6 +142,7 @@ void hessian_of(const Stencils& s, BlockRange range, const ChunkBlocks& blocks, 
     indefinite.run();
     packed = room.scratch;
     for (int block = first; block < last; ++block, packed += s.quadrature * size) {
+      if (block + 1 < last) prefetch(s.slots + (block + 1L) * pairs * kWidth, 4L * kWidth * pairs);
       element_matrix<S>(s, block, packed, element);
       add_element<S>(s, block, element, room.sums);
     }

@@ -2,7 +2,6 @@
 // Projects the indefinite matrices of many blocks. Decomposing one lane costs as much as decomposing all, so lanes of a
 // block that need nothing are lent to matrices of other blocks. Included only by files in runtime/lanes.
 
-#include "runtime/lanes/lanes.h"
 #include "runtime/lanes/projection.h"
 
 namespace ergon::lanes {
@@ -12,7 +11,6 @@ template <int N>
 class ProjectionBatch {
  public:
   static constexpr int kCapacity = 256;
-  static_assert(kCapacity >= kMaxQuadrature);
 
   explicit ProjectionBatch(Negative mode) : mode_(mode) {}
 

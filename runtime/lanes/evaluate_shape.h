@@ -85,6 +85,26 @@ class Weights<S, false> {
   int points_;
 };
 
+inline void prefetch(const void* first, long bytes) {
+  for (long at = 0; at < bytes; at += 64) __builtin_prefetch(static_cast<const char*>(first) + at);
+}
+
+// Asks for the data of a block that will be evaluated soon: chunks of a colour lie far apart, so the processor does not
+// see the next one coming.
+template <class S>
+inline void prefetch_block(const Stencils& s, int block) {
+  const int n = S::points(s);
+  const long vector = 8L * kWidth, points = static_cast<long>(block) * n * kWidth;
+  const long places = static_cast<long>(block) * s.quadrature;
+  prefetch(s.vertices + points, 4L * kWidth * n);
+  if constexpr (S::kDensity) {
+    const long weights = vector * S::kVectors * (n - 1);
+    prefetch(s.weights + places * (weights / 8), weights * s.quadrature);
+    prefetch(s.volumes + places * kWidth, vector * s.quadrature);
+  }
+  prefetch(data_of(s, block), vector * s.kernel->elements);
+}
+
 template <class S>
 inline void gather_points(const Stencils& s, int block, const double* x, Vector3* points) {
   const int n = S::points(s);

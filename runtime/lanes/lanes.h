@@ -9,8 +9,7 @@
 
 namespace ergon::lanes {
 
-constexpr int kMaxPoints = 27;  // of a stencil or element
-constexpr int kMaxQuadrature = 64;
+constexpr int kMaxPoints = 27;    // of a stencil or element
 constexpr int kMaxVectors = 4;    // 3-vectors in q
 constexpr int kProjectClamp = 0;  // what is done to negative eigenvalues; the order of ergon::Projection
 constexpr int kProjectAbsolute = 1;
