@@ -28,8 +28,10 @@ bool has_moduli(const Energy& energy) {
          nu->role == Role::param && E->shape.scalar() && nu->shape.scalar();
 }
 
+// An energy that acts only where its `active` conditions hold is no spring around the rest positions.
 bool has_rest_state(const Energy& energy) {
   if (energy.kind == Energy::Kind::density) return true;
+  if (!energy.active.empty()) return false;
   const auto dofs = energy.with_role(Role::dof);
   return std::all_of(dofs.begin(), dofs.end(), [&](const Symbol* dof) { return rest_position(energy, *dof); });
 }

@@ -12,17 +12,29 @@
 #include "tools/installation.h"
 #include "tools/problem.h"
 #include "tools/sample.h"
+#include "tools/stencils.h"
 
 namespace ergon {
 namespace {
 
-// The first sample values at which the energy and its gradient are finite and all `require` conditions hold, with the
-// given ones in their place. Looked for on a small mesh of the same shape.
-Values usable_values(const Energy& energy, const Kernel& kernel, Element element, const Values& given) {
-  const Mesh mesh = sample_mesh(element, 3);
+// Where an energy is measured: its mesh, and the stencils of a stencil energy.
+StencilSample sample_of(const Energy& energy, const std::string& element, int cells) {
+  if (energy.kind == Energy::Kind::stencil && element.empty()) return sample_stencils(energy.geometry, cells);
+  if (energy.kind == Energy::Kind::stencil) {
+    Mesh mesh = sample_mesh(element_named(element), cells);
+    std::vector<int> stencils = stencils_on_mesh(energy.geometry, mesh);
+    return {std::move(mesh), std::move(stencils)};
+  }
+  const Element chosen = element.empty() ? default_element(energy) : element_named(element);
+  check_element(energy, chosen);
+  return {sample_mesh(chosen, cells), {}};
+}
+
+// The first sample values at which the energy and its gradient are finite, all `require` conditions hold and the
+// `active` ones of some stencil do, with the given ones in their place. Looked for on a small mesh of the same shape.
+Values usable_values(const Energy& energy, const Kernel& kernel, const std::string& element, const Values& given) {
+  const auto [mesh, stencils] = sample_of(energy, element, 3);
   const Eigen::Matrix3Xd x = displaced(mesh.X, 1.0 / 3, 0.15 / 3);
-  const std::vector<int> stencils =
-      energy.kind == Energy::Kind::density ? std::vector<int>() : stencils_on_mesh(energy.geometry, mesh);
   constexpr int attempts = 1000;
   for (int attempt = 0; attempt < attempts; ++attempt) {
     Values values = given;
@@ -36,7 +48,8 @@ Values usable_values(const Energy& energy, const Kernel& kernel, Element element
     if (!(at.require > 0) || !std::isfinite(at.value)) continue;
     Eigen::Matrix3Xd gradient;
     system.gradient(x, gradient);
-    if (gradient.allFinite()) return values;
+    if (!gradient.allFinite()) continue;
+    if (kernel->actives == 0 || !active_stencils(energy, kernel, mesh, stencils, values, x).empty()) return values;
   }
   throw InputError(fmt::format("no inputs of {} were found at which it is defined; give some with --set", energy.name));
 }
@@ -64,16 +77,12 @@ void bench_case(const Energy& energy, const std::string& case_name, const BenchK
   if (!options.entry.empty()) chosen("--entry", options.entry, entries);
   const Projection projection = projection_named(options.projection);
   const bool density = energy.kind == Energy::Kind::density;
-  Element element = density ? default_element(energy) : Element::tet4;
-  if (!options.element.empty()) element = element_named(options.element);
-  if (density) check_element(energy, element);
-
   const Kernel kernel = load_kernel(energy, case_name, lanes::best_lanes());
-  const Values values = usable_values(energy, kernel, element, read_assignments(energy, options.set));
-  const Mesh mesh = sample_mesh(element, options.cells);
-  const std::vector<int> stencils = density ? std::vector<int>() : stencils_on_mesh(energy.geometry, mesh);
+  const Values values = usable_values(energy, kernel, options.element, read_assignments(energy, options.set));
+  auto [mesh, stencils] = sample_of(energy, options.element, options.cells);
   const double cell = 1.0 / options.cells;
   const Eigen::Matrix3Xd x = displaced(mesh.X, cell, 0.15 * cell);
+  if (kernel->actives > 0) stencils = active_stencils(energy, kernel, mesh, stencils, values, x);
   System system = make_system(energy, kernel, mesh, stencils, values);
   Eigen::Matrix3Xd gradient;
   BlockMatrix hessian;
@@ -95,7 +104,7 @@ void bench_case(const Energy& energy, const std::string& case_name, const BenchK
     const Potential& potential = system.potential(0);
     const int elements = potential.stencil_count();
     rows.add({{"energy", case_name.empty() ? energy.name : energy.name + "/" + case_name},
-              {"element", density ? name_of(element) : energy.geometry},
+              {"element", density ? name_of(mesh.element) : energy.geometry},
               {"entry", entry},
               {"projection", entry == "hessian" ? options.projection : "none"},
               {"lanes", kernel->lanes},

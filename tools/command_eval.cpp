@@ -17,6 +17,7 @@
 #include "tools/positions.h"
 #include "tools/problem.h"
 #include "tools/rows.h"
+#include "tools/stencils.h"
 
 namespace ergon {
 namespace {
@@ -61,7 +62,9 @@ int eval(const Options& options, std::ostream& out) {
 
   const Kernel kernel = load_kernel(energy, case_name, lanes::best_lanes());
   const bool density = energy.kind == Energy::Kind::density;
-  const std::vector<int> stencils = density ? std::vector<int>() : active_stencils(energy, kernel, mesh, values, x);
+  const std::vector<int> stencils =
+      density ? std::vector<int>()
+              : active_stencils(energy, kernel, mesh, stencils_on_mesh(energy.geometry, mesh), values, x);
   System system = make_system(energy, kernel, mesh, stencils, values);
   const Evaluation state = system.value(x);
   if (!(state.require > 0) || !std::isfinite(state.value)) {

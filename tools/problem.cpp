@@ -56,10 +56,9 @@ std::vector<const Symbol*> needed_inputs(const Energy& energy) {
   return needed;
 }
 
-std::vector<int> active_stencils(const Energy& energy, const Kernel& kernel, const Mesh& mesh, const Values& values,
-                                 const Eigen::Matrix3Xd& x) {
+std::vector<int> active_stencils(const Energy& energy, const Kernel& kernel, const Mesh& mesh,
+                                 const std::vector<int>& all, const Values& values, const Eigen::Matrix3Xd& x) {
   check_given(energy, values);
-  const std::vector<int> all = stencils_on_mesh(energy.geometry, mesh);
   if (kernel->actives == 0) return all;
   // One stencil at a time, the same in every lane.
   const auto lanes = static_cast<size_t>(kernel->lanes), points = static_cast<size_t>(kernel->points);

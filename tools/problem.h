@@ -20,10 +20,10 @@ using Values = std::map<std::string, std::vector<double>>;
 // declaration.
 std::vector<const Symbol*> needed_inputs(const Energy& energy);
 
-// The stencils of a stencil energy whose `active` conditions all hold at x (3 x vertices, m). Throws InputError as
-// make_system does.
-std::vector<int> active_stencils(const Energy& energy, const Kernel& kernel, const Mesh& mesh, const Values& values,
-                                 const Eigen::Matrix3Xd& x);
+// Those of `all` stencils of a stencil energy whose `active` conditions hold at x (3 x vertices, m). Throws InputError
+// as make_system does.
+std::vector<int> active_stencils(const Energy& energy, const Kernel& kernel, const Mesh& mesh,
+                                 const std::vector<int>& all, const Values& values, const Eigen::Matrix3Xd& x);
 
 // The potential on `stencils` (of a density: on the mesh's cells, and `stencils` is not used). Throws InputError for an
 // input that is missing, naming its meaning, range and unit, and for an element the energy cannot live on.

@@ -9,6 +9,7 @@
 
 #include "runtime/error.h"
 #include "runtime/mesh/mesh_build.h"
+#include "tools/stencils.h"
 
 namespace ergon {
 namespace {
@@ -30,41 +31,6 @@ Mesh square_of_triangles(int cells) {
   return mesh;
 }
 
-// Pairs of corners (by their place in the cell) that an edge joins.
-std::vector<std::array<int, 2>> corner_edges(Element element) {
-  switch (element) {
-    case Element::point:
-      return {};
-    case Element::edge2:
-      return {{0, 1}};
-    case Element::tri3:
-      return {{0, 1}, {1, 2}, {2, 0}};
-    case Element::tet4:
-    case Element::tet10:
-      return {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
-    case Element::hex8:
-      return {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
-  }
-  return {};
-}
-
-std::vector<int> edges_of(const Mesh& mesh) {
-  const std::vector<std::array<int, 2>> corners = corner_edges(mesh.element);
-  const int nodes = nodes_of(mesh.element);
-  std::vector<std::array<int, 2>> edges;
-  for (size_t start = 0; start < mesh.cells.size(); start += static_cast<size_t>(nodes)) {
-    for (const auto& [a, b] : corners) {
-      const int va = mesh.cells[start + static_cast<size_t>(a)], vb = mesh.cells[start + static_cast<size_t>(b)];
-      edges.push_back({std::min(va, vb), std::max(va, vb)});
-    }
-  }
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  std::vector<int> flat;
-  for (const auto& [a, b] : edges) flat.insert(flat.end(), {a, b});
-  return flat;
-}
-
 }  // namespace
 
 Mesh sample_mesh(Element element, int cells) {
@@ -82,7 +48,7 @@ Mesh sample_mesh(Element element, int cells) {
       return square_of_triangles(cells);
     case Element::edge2: {
       Mesh mesh = box_tets(size, counts);
-      mesh.cells = edges_of(mesh);
+      mesh.cells = stencils_on_mesh("edge", mesh);
       mesh.element = Element::edge2;
       return mesh;
     }
@@ -118,17 +84,6 @@ void check_element(const Energy& density, Element element) {
     throw InputError(fmt::format("{} is a density of a {}; {} elements have dimension {}, not {}", density.name,
                                  density.geometry, name_of(element), dimension_of(element), dimension));
   }
-}
-
-std::vector<int> stencils_on_mesh(std::string_view geometry, const Mesh& mesh) {
-  if (geometry == "edge") return edges_of(mesh);
-  if (geometry == "point") {
-    std::vector<int> vertices = mesh.cells;
-    std::sort(vertices.begin(), vertices.end());
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    return vertices;
-  }
-  throw InputError(fmt::format("no stencils '{}' can be made from a mesh; 'point' and 'edge' can", geometry));
 }
 
 std::map<std::string, std::vector<double>> sample_values(const Energy& energy, Role role, int attempt) {

@@ -27,10 +27,6 @@ Element default_element(const Energy& density);
 // Throws InputError when a density cannot live on the element.
 void check_element(const Energy& density, Element element);
 
-// The points of the stencils of a geometry on a mesh, one stencil after the other: "point": each vertex that a cell
-// names; "edge": each edge between corners of cells, once, lower vertex first. Throws InputError for other geometries.
-std::vector<int> stencils_on_mesh(std::string_view geometry, const Mesh& mesh);
-
 // A value within the declared range for every symbol with this role, components column by column. Attempt 0 is a plain
 // choice (1 above a lower bound, the point at 4/5 of a bounded range, the z axis for a dimensionless vector); further
 // attempts are drawn at random, over some orders of magnitude.

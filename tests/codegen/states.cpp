@@ -47,10 +47,13 @@ const Symbol* rest_of(const Energy& energy, const Symbol& dof) {
 
 void place_points(const Energy& energy, const std::string& kind, Inputs& inputs, std::mt19937& random) {
   std::vector<double> turn = random_rotation(random);
-  double size = kind == "near rest" ? 1e-4 : kind == "random" ? 0.3 : 1.5;
+  const bool in_line = kind == "in line";
+  double size = kind == "near rest" ? 1e-4 : kind == "random" ? 0.3 : in_line ? 0.02 : 1.5;
   for (const Symbol* dof : energy.with_role(Role::dof)) {
     const Symbol* rest = rest_of(energy, *dof);
-    std::vector<double> at = rest ? rotated(turn, inputs[rest->name]) : gaussian(dof->shape.size(), 1, random);
+    std::vector<double> at =
+        rest && !in_line ? rotated(turn, inputs[rest->name]) : gaussian(dof->shape.size(), 1, random);
+    if (in_line) at = {at[0] * turn[0], at[0] * turn[1], at[0] * turn[2]};
     std::vector<double> noise = gaussian(dof->shape.size(), size, random);
     for (size_t i = 0; i < at.size(); ++i) at[i] += noise[i];
     inputs[dof->name] = at;
@@ -92,8 +95,9 @@ std::vector<double> rotated(const std::vector<double>& r, const std::vector<doub
 std::vector<State> draw_states(const Energy& energy, const std::string& case_name, unsigned seed) {
   std::mt19937 random(seed);
   std::vector<State> out;
-  for (const char* kind : {"near rest", "random", "strongly deformed", "inverted"}) {
+  for (const std::string kind : {"near rest", "random", "strongly deformed", "inverted", "in line"}) {
     int found = 0;
+    if (kind == "in line" && energy.with_role(Role::dof).size() < 3) continue;
     for (int attempt = 0; attempt < 300 && found < 4; ++attempt) {
       State state{kind, {}};
       for (const Symbol& s : energy.symbols) {

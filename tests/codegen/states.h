@@ -12,7 +12,8 @@
 namespace ergon::testing {
 
 struct State {
-  std::string kind;  // "near rest", "random", "strongly deformed", "inverted"
+  std::string
+      kind;  // "near rest", "random", "strongly deformed", "inverted", "in line" (three points and more, nearly)
   Inputs inputs;
 };
 

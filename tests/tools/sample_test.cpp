@@ -33,22 +33,6 @@ TEST(Sample, NoiseHasTheAmplitudeAskedForAndIsTheSameEveryTime) {
   EXPECT_EQ(x, displaced(mesh.X, 1.0 / 6, 0.15 / 6));
 }
 
-TEST(Sample, EdgesAreFoundOnceEach) {
-  // Euler's formula on the brick cut in six: 8 vertices, 19 edges (12 of the brick, 6 face diagonals, 1 inside).
-  EXPECT_EQ(stencils_on_mesh("edge", sample_mesh(Element::tet4, 1)).size(), 2u * 19u);
-  EXPECT_EQ(stencils_on_mesh("edge", sample_mesh(Element::hex8, 1)).size(), 2u * 12u);
-  EXPECT_EQ(stencils_on_mesh("point", sample_mesh(Element::tet4, 1)).size(), 8u);
-}
-
-TEST(Sample, AGeometryThatAMeshDoesNotHaveIsBadInput) {
-  try {
-    stencils_on_mesh("body_pair", sample_mesh(Element::tet4, 1));
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "no stencils 'body_pair' can be made from a mesh; 'point' and 'edge' can");
-  }
-}
-
 TEST(Sample, ValuesAreWithinTheirRanges) {
   const Energy energy = read_energy(ERGON_SOURCE_DIR "/energies/contact/ground_friction.energy");
   for (int attempt = 0; attempt < 20; ++attempt) {

@@ -1,0 +1,188 @@
+#include "tools/stencils.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "runtime/error.h"
+#include "tools/sample.h"
+
+namespace ergon {
+namespace {
+
+// Pairs of corners (by their place in the cell) that an edge joins.
+std::vector<std::array<int, 2>> corner_edges(Element element) {
+  switch (element) {
+    case Element::point:
+      return {};
+    case Element::edge2:
+      return {{0, 1}};
+    case Element::tri3:
+      return {{0, 1}, {1, 2}, {2, 0}};
+    case Element::tet4:
+    case Element::tet10:
+      return {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+    case Element::hex8:
+      return {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
+  }
+  return {};
+}
+
+std::vector<int> edges_of(const Mesh& mesh) {
+  const std::vector<std::array<int, 2>> corners = corner_edges(mesh.element);
+  const int nodes = nodes_of(mesh.element);
+  std::vector<std::array<int, 2>> edges;
+  for (size_t start = 0; start < mesh.cells.size(); start += static_cast<size_t>(nodes)) {
+    for (const auto& [a, b] : corners) {
+      const int va = mesh.cells[start + static_cast<size_t>(a)], vb = mesh.cells[start + static_cast<size_t>(b)];
+      edges.push_back({std::min(va, vb), std::max(va, vb)});
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  std::vector<int> flat;
+  for (const auto& [a, b] : edges) flat.insert(flat.end(), {a, b});
+  return flat;
+}
+
+std::vector<int> vertices_of(const Mesh& mesh) {
+  std::vector<int> vertices = mesh.cells;
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  return vertices;
+}
+
+const std::vector<int>& cells_of(std::string_view geometry, const Mesh& mesh, Element element) {
+  if (mesh.element == element) return mesh.cells;
+  throw InputError(fmt::format("'{}' stencils are made from a mesh of {} elements; this one has {}", geometry,
+                               name_of(element), name_of(mesh.element)));
+}
+
+// An edge from a to b of one triangle and from b to a of its neighbour; an edge of more triangles makes no hinge.
+std::vector<int> hinges_of(const std::vector<int>& triangles) {
+  std::map<std::array<int, 2>, std::vector<int>> opposite;  // directed edge -> third corners
+  for (size_t start = 0; start < triangles.size(); start += 3) {
+    const int* t = triangles.data() + start;
+    for (int i = 0; i < 3; ++i) opposite[{t[i], t[(i + 1) % 3]}].push_back(t[(i + 2) % 3]);
+  }
+  std::vector<int> flat;
+  for (const auto& [edge, third] : opposite) {
+    const auto other = opposite.find({edge[1], edge[0]});
+    if (edge[0] > edge[1] || third.size() != 1 || other == opposite.end() || other->second.size() != 1) continue;
+    flat.insert(flat.end(), {edge[0], edge[1], third[0], other->second[0]});
+  }
+  return flat;
+}
+
+// Sheets one above the other, every second one shifted against its neighbours by a part of a cell, so that vertices lie
+// over the inside of triangles and edges cross inside.
+class Sheets {
+ public:
+  explicit Sheets(int cells) : cells_(cells), row_(cells + 1), size_(row_ * row_) {
+    const Mesh sheet = sample_mesh(Element::tri3, cells);
+    mesh.element = Element::tri3;
+    mesh.X.resize(3, size_ * row_);
+    for (int k = 0; k <= cells; ++k) {
+      const double shift = k % 2;
+      const Eigen::Vector3d corner = Eigen::Vector3d(shift * shift_x, shift * shift_y, k) / cells;
+      mesh.X.middleCols(k * size_, size_) = sheet.X.colwise() + corner;
+      for (const int v : sheet.cells) mesh.cells.push_back(k * size_ + v);
+    }
+  }
+
+  // p, then the triangle of a neighbouring sheet that it projects into.
+  std::vector<int> point_triangles() const {
+    std::vector<int> flat;
+    for_each_pair([&](int of, int to, int i, int j) {
+      // A shifted vertex is over the upper triangle of its cell, one that is not over the lower one of the cell before.
+      const bool shifted = of % 2 != 0;
+      const int c = shifted ? i : i - 1, r = shifted ? j : j - 1;
+      if (c < 0 || r < 0 || c == cells_ || r == cells_) return;
+      const int a = vertex(to, c, r), b = vertex(to, c + 1, r + 1),
+                side = shifted ? vertex(to, c, r + 1) : vertex(to, c + 1, r);
+      flat.insert(flat.end(), {vertex(of, i, j), a, shifted ? b : side, shifted ? side : b});
+    });
+    return flat;
+  }
+
+  // Edges along x of one sheet with those along y of the other that they cross.
+  std::vector<int> edge_edges() const {
+    std::vector<int> flat;
+    for_each_pair([&](int of, int to, int i, int j) {
+      const bool shifted = of % 2 != 0;
+      const int c = shifted ? i + 1 : i, r = shifted ? j : j - 1;
+      if (i == cells_ || r < 0 || r == cells_) return;
+      flat.insert(flat.end(), {vertex(of, i, j), vertex(of, i + 1, j), vertex(to, c, r), vertex(to, c, r + 1)});
+    });
+    return flat;
+  }
+
+  Mesh mesh;
+
+ private:
+  static constexpr double shift_x = 0.35, shift_y = 0.6;  // of a cell
+
+  int vertex(int sheet, int i, int j) const { return sheet * size_ + j * row_ + i; }
+  // f(sheet, a neighbour, column, row) for each vertex of the sheet.
+  template <class F>
+  void for_each_pair(F f) const {
+    for (int k = 0; k <= cells_; ++k) {
+      for (int to = k - 1; to <= k + 1; to += 2) {
+        if (to < 0 || to > cells_) continue;
+        for (int j = 0; j < row_; ++j) {
+          for (int i = 0; i < row_; ++i) f(k, to, i, j);
+        }
+      }
+    }
+  }
+
+  int cells_, row_, size_;
+};
+
+// The first `kept` of every four points.
+std::vector<int> shortened(const std::vector<int>& stencils, size_t kept) {
+  std::vector<int> flat;
+  for (size_t start = 0; start < stencils.size(); start += 4) {
+    for (size_t i = 0; i < kept; ++i) flat.push_back(stencils[start + i]);
+  }
+  return flat;
+}
+
+}  // namespace
+
+std::vector<int> stencils_on_mesh(std::string_view geometry, const Mesh& mesh) {
+  if (geometry == "point") return vertices_of(mesh);
+  if (geometry == "edge") return edges_of(mesh);
+  if (geometry == "triangle") return cells_of(geometry, mesh, Element::tri3);
+  if (geometry == "hinge") return hinges_of(cells_of(geometry, mesh, Element::tri3));
+  if (geometry == "tetrahedron") return cells_of(geometry, mesh, Element::tet4);
+  throw InputError(fmt::format(
+      "no stencils '{}' can be made from a mesh; 'point', 'edge', 'triangle', 'hinge' and 'tetrahedron' can",
+      geometry));
+}
+
+StencilSample sample_stencils(std::string_view geometry, int cells) {
+  if (geometry == "point" || geometry == "edge" || geometry == "tetrahedron") {
+    Mesh mesh = sample_mesh(Element::tet4, cells);
+    std::vector<int> stencils = stencils_on_mesh(geometry, mesh);
+    return {std::move(mesh), std::move(stencils)};
+  }
+  Sheets sheets(cells);
+  std::vector<int> stencils;
+  if (geometry == "point_triangle") {
+    stencils = sheets.point_triangles();
+  } else if (geometry == "point_edge") {
+    stencils = shortened(sheets.point_triangles(), 3);
+  } else if (geometry == "point_point") {
+    stencils = shortened(sheets.point_triangles(), 2);
+  } else if (geometry == "edge_edge") {
+    stencils = sheets.edge_edges();
+  } else {
+    stencils = stencils_on_mesh(geometry, sheets.mesh);
+  }
+  return {std::move(sheets.mesh), std::move(stencils)};
+}
+
+}  // namespace ergon
