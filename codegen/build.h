@@ -1,5 +1,5 @@
 #pragma once
-// Pass 7: an emitted source becomes a shared library, by the C++ compiler of the machine.
+// Pass 8: an emitted source becomes a shared library, by the C++ compiler of the machine.
 
 #include <filesystem>
 #include <stdexcept>

@@ -8,6 +8,7 @@
 #include "codegen/frontier.h"
 #include "codegen/hash.h"
 #include "codegen/lower.h"
+#include "codegen/principal.h"
 #include "codegen/schedule.h"
 #include "codegen/structure.h"
 
@@ -41,6 +42,7 @@ Generated generate(const Energy& energy, const CompileOptions& options) {
   pass("frontier", out.times.frontier, [&] { frontier(out.module); });
   pass("differentiate", out.times.differentiate, [&] { differentiate(out.module); });
   pass("structure", out.times.structure, [&] { find_structure(out.module); });
+  pass("principal", out.times.principal, [&] { find_principal(out.module); });
   pass("schedule", out.times.schedule, [&] { code = schedule(out.module); });
   pass("emit", out.times.emit, [&] {
     Emitted emitted = emit(out.module, code, options.lanes);

@@ -28,8 +28,11 @@ struct CompileOptions {
 
 // Seconds spent in each part.
 struct CompileTimes {
-  double lower = 0, frontier = 0, differentiate = 0, structure = 0, schedule = 0, emit = 0, compile = 0, load = 0;
-  double total() const { return lower + frontier + differentiate + structure + schedule + emit + compile + load; }
+  double lower = 0, frontier = 0, differentiate = 0, structure = 0, principal = 0, schedule = 0, emit = 0, compile = 0,
+         load = 0;
+  double total() const {
+    return lower + frontier + differentiate + structure + principal + schedule + emit + compile + load;
+  }
 };
 
 // What the passes give before any C++ compiler is asked.

@@ -89,11 +89,12 @@ std::string kernel_table(const Module& m, const OperationCounts& c, int lanes) {
       "extern \"C\" __attribute__((visibility(\"default\"))) const ErgonKernel ergon_kernel = {{\n"
       "  ERGON_KERNEL_ABI, {}, {}, {}, {}, {}, {}, {}, {},\n  {}, inputs, {}, {}, {}, {}, {}, {},\n  {}, {}, {}, {},\n"
       "  {}, {}, {}, {},\n  prepare_uniforms, prepare_elements, conditions, value_entry, gradient_entry, "
-      "hessian_entry, {}}};\n",
+      "hessian_entry, {},\n  {}, {}, {}}};\n",
       lanes, quoted(m.energy->name), quoted(m.case_name), quoted(m.energy->geometry), density ? 1 : 0, m.points,
       m.q_vectors, density ? "0" : "weights", inputs, m.params, m.raw, c.uniforms, c.elements, m.require.size(),
       m.active.size(), int{m.constant_gradient}, int{m.constant_hessian}, int{m.zero_hessian}, int{m.psd_hessian},
-      c.value, c.gradient, c.hessian, c.divisions, density ? "0" : "points");
+      c.value, c.gradient, c.hessian, c.divisions, density ? "0" : "points", int{m.displacement},
+      m.principal.empty() ? "0" : "principal_entry", c.principal);
   return out;
 }
 
@@ -130,6 +131,7 @@ Emitted emit(const Module& m, const Schedule& s, int lanes) {
   FunctionText value_text = text(join(value, margins));
   FunctionText gradient_text = text(gradient);
   FunctionText hessian_text = text(hessian);
+  FunctionText principal_text = text(outputs_to("blocks", s.principal));
   std::string smallest = "  require[0] = __builtin_inf() - V{};\n";
   for (size_t i = 0; i < s.require.size(); ++i)
     smallest += fmt::format("  require[0] = v_min(margin{}, require[0]);\n", i);
@@ -139,6 +141,7 @@ Emitted emit(const Module& m, const Schedule& s, int lanes) {
   c.value = static_cast<int>(text(value).instructions.size());
   c.gradient = static_cast<int>(gradient_text.instructions.size());
   c.hessian = static_cast<int>(hessian_text.instructions.size());
+  c.principal = static_cast<int>(principal_text.instructions.size());
   c.uniforms = static_cast<int>(slots.uniforms.size());
   c.elements = static_cast<int>(slots.elements.size());
   for (int i : hessian_text.instructions) {
@@ -148,7 +151,8 @@ Emitted emit(const Module& m, const Schedule& s, int lanes) {
   }
   std::set<std::string> used;
   if (!s.require.empty()) used.insert("v_min");
-  for (const FunctionText* f : {&uniforms, &elements, &conditions, &value_text, &gradient_text, &hessian_text})
+  for (const FunctionText* f :
+       {&uniforms, &elements, &conditions, &value_text, &gradient_text, &hessian_text, &principal_text})
     count_calls(p, f->instructions, used);
 
   out.source = header(m, c) + prelude(lanes, used) + kKernelAbiText + "\n";
@@ -169,6 +173,12 @@ Emitted emit(const Module& m, const Schedule& s, int lanes) {
   out.source += entry("hessian_entry", "double* value_, double* gradient_, double* hessian_",
                       "  V* value = (V*)value_;\n  V* gradient = (V*)gradient_;\n  V* hessian = (V*)hessian_;\n",
                       hessian_text.body);
+  if (!m.principal.empty())
+    out.source += fmt::format(
+        "static void principal_entry(const double* s_, const double* e_, const double* u, double* blocks_) {{\n"
+        "  const V* s = (const V*)s_;\n  const V* e = (const V*)e_;\n  V* blocks = (V*)blocks_;\n"
+        "  (void)s, (void)e, (void)u;\n{}}}\n\n",
+        principal_text.body);
   out.source += kernel_table(m, c, lanes);
   return out;
 }

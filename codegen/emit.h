@@ -1,5 +1,5 @@
 #pragma once
-// Pass 6: straight-line code becomes self-contained C++ of W lanes, readable and without headers.
+// Pass 7: straight-line code becomes self-contained C++ of W lanes, readable and without headers.
 
 #include <string>
 
@@ -15,9 +15,10 @@ struct OperationCounts {
   int hessian = 0;    // value, gradient and Hessian
   int divisions = 0;  // in the Hessian entry point; square roots are counted apart
   int roots = 0;
-  int calls = 0;     // transcendental functions
-  int uniforms = 0;  // values computed once per material
-  int elements = 0;  // values kept per element
+  int calls = 0;      // transcendental functions
+  int principal = 0;  // blocks of an isotropic density
+  int uniforms = 0;   // values computed once per material
+  int elements = 0;   // values kept per element
 };
 
 struct Emitted {

@@ -43,8 +43,8 @@ const char* name_of(Call call);
 // The function's value in double precision.
 double evaluate(Call call, const std::vector<double>& arguments);
 
-// Where an input comes from; its index counts within the kind.
-enum class Source { param, raw, point, q };
+// Where an input comes from; its index counts within the kind. stretch: singular values of F.
+enum class Source { param, raw, point, q, stretch };
 
 struct Node {
   enum class Kind { constant, input, sum, product, call };

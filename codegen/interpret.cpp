@@ -15,10 +15,11 @@ std::vector<double> interpret(const Graph& graph, const std::vector<NodeId>& wan
         v = n.constant;
         break;
       case Node::Kind::input: {
-        const std::vector<double>& from = n.source == Source::param   ? inputs.params
-                                          : n.source == Source::raw   ? inputs.raw
-                                          : n.source == Source::point ? inputs.points
-                                                                      : inputs.q;
+        const std::vector<double>& from = n.source == Source::param     ? inputs.params
+                                          : n.source == Source::raw     ? inputs.raw
+                                          : n.source == Source::point   ? inputs.points
+                                          : n.source == Source::stretch ? inputs.stretch
+                                                                        : inputs.q;
         v = from.at(static_cast<size_t>(n.index));
         break;
       }

@@ -108,7 +108,8 @@ class GraphAlgebra {
 std::vector<NodeId> Module::roots() const {
   std::vector<NodeId> out;
   if (value >= 0) out.push_back(value);
-  for (const auto* list : {&active, &require, &gradient, &hessian}) out.insert(out.end(), list->begin(), list->end());
+  for (const auto* list : {&active, &require, &gradient, &hessian, &principal})
+    out.insert(out.end(), list->begin(), list->end());
   return out;
 }
 

@@ -40,7 +40,13 @@ struct Module {
   bool zero_hessian = false;
   bool psd_hessian = false;
 
-  // Every node that something outside the graph refers to: value, conditions, gradient, Hessian.
+  // Whether q of a density is its displacement gradient F - I instead of F.
+  bool displacement = false;
+
+  // Set by find_principal(); empty when there is no closed form.
+  std::vector<NodeId> principal;
+
+  // Every node that something outside the graph refers to: value, conditions, gradient, Hessian, its principal blocks.
   std::vector<NodeId> roots() const;
 };
 

@@ -42,7 +42,7 @@ void rewrite(Module& module, const RewriteRule& rule) {
     if (id >= 0) id = renumbered[static_cast<size_t>(id)];
   };
   renumber(module.value);
-  for (auto* list : {&module.active, &module.require, &module.gradient, &module.hessian})
+  for (auto* list : {&module.active, &module.require, &module.gradient, &module.hessian, &module.principal})
     for (NodeId& id : *list) renumber(id);
 }
 

@@ -263,6 +263,7 @@ Schedule schedule(Module& module) {
   out.require = scheduler.values(module.require);
   out.gradient = scheduler.values(module.gradient);
   out.hessian = scheduler.values(module.hessian);
+  out.principal = scheduler.values(module.principal);
   out.program = scheduler.take();
   return out;
 }

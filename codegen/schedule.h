@@ -1,5 +1,5 @@
 #pragma once
-// Pass 5: from the graph to straight-line code.
+// Pass 6: from the graph to straight-line code.
 //
 // Establishes a program in which every n-ary sum and product is a chain of two-operand instructions; what depends on
 // parameters or rest and lag data alone stands apart (lifetimes), so that it can be computed once; powers, roots and
@@ -15,7 +15,7 @@ namespace ergon {
 struct Schedule {
   Program program;
   int value = -1;
-  std::vector<int> active, require, gradient, hessian;
+  std::vector<int> active, require, gradient, hessian, principal;
 };
 
 Schedule schedule(Module& module);

@@ -5,7 +5,7 @@ namespace ergon {
 Slots assign_slots(const Schedule& s) {
   const Program& p = s.program;
   std::vector<int> roots = {s.value};
-  for (const auto* list : {&s.active, &s.require, &s.gradient, &s.hessian})
+  for (const auto* list : {&s.active, &s.require, &s.gradient, &s.hessian, &s.principal})
     roots.insert(roots.end(), list->begin(), list->end());
 
   // The shortest lifetime among the users of each value; entry points run at Lifetime::state.

@@ -13,7 +13,7 @@
 extern "C" {
 #endif
 
-#define ERGON_KERNEL_ABI 1
+#define ERGON_KERNEL_ABI 2
 
 enum ErgonRole { ERGON_PARAM = 0, ERGON_REST = 1, ERGON_LAG = 2 };
 
@@ -69,6 +69,13 @@ typedef struct ErgonKernel {
   void (*hessian)(const double* q, const double* e, const double* u, double* value, double* gradient, double* hessian);
 
   const char* const* point_names; /* stencil: [points], the names of its dofs; 0 for a density */
+
+  int displacement; /* 1: q of a density is F - I, so the weights are applied to x - X */
+
+  /* An isotropic density; otherwise 0. Blocks of the Hessian with respect to F at F = diag(s), s[q_vectors][lanes]:
+     their order is in codegen/principal.h; 12, 7 or 2 of them for 3, 2 or 1 vectors. */
+  void (*principal)(const double* s, const double* e, const double* u, double* blocks);
+  int operations_principal;
 } ErgonKernel;
 
 #ifdef __cplusplus

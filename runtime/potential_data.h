@@ -20,6 +20,8 @@ struct Potential::Impl {
   int count = 0;
 
   std::vector<int> stencils;       // as given
+  int first_vertex = 0;            // of the system, where rest begins
+  Eigen::Matrix3Xd rest;           // rest positions of a density whose q is F - I, else empty
   AlignedVector<int> vertices;     // [block][points][lanes]
   AlignedVector<double> weights;   // lanes::Stencils::weights
   AlignedVector<double> volumes;   // [block][quadrature][lanes]

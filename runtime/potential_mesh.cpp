@@ -99,6 +99,8 @@ Potential Potential::on_mesh(std::string name, Kernel kernel, const Mesh& mesh, 
     }
     d.stencils[i] += first_vertex;
   }
+  d.first_vertex = first_vertex;
+  if (d.kernel->displacement) d.rest = mesh.X;
   d.check_params(params);
   d.give_params(params);
 

@@ -58,6 +58,7 @@ int System::add(Potential potential) {
   impl->terms.emplace_back(std::move(potential));
   SystemTerm& term = impl->terms.back();
   term.operations = &lanes::lane_operations(term.data().lanes);
+  impl->find_configuration(term);
   term.colour(impl->seen);
   impl->pattern_known = false;
   impl->base_known = false;
@@ -85,6 +86,40 @@ void System::Impl::load_positions(const Eigen::Matrix3Xd& positions) {
 #pragma omp parallel for schedule(static) if (vertices > kWorthThreads)
   for (int v = 0; v < vertices; ++v) {
     for (int c = 0; c < 3; ++c) x[4 * static_cast<size_t>(v) + static_cast<size_t>(c)] = positions(c, v);
+  }
+  for (RestConfiguration& configuration : configurations) {
+#pragma omp parallel for schedule(static) if (vertices > kWorthThreads)
+    for (size_t i = 0; i < x.size(); ++i) configuration.displacement[i] = x[i] - configuration.X[i];
+  }
+}
+
+const double* System::Impl::points_of(const SystemTerm& term) const {
+  if (term.configuration < 0) return x.data();
+  return configurations[static_cast<size_t>(term.configuration)].displacement.data();
+}
+
+void System::Impl::find_configuration(SystemTerm& term) {
+  const Potential::Impl& d = term.data();
+  if (d.rest.cols() == 0) return;
+  const auto first = static_cast<size_t>(d.first_vertex), count = static_cast<size_t>(d.rest.cols());
+  if (first + count > static_cast<size_t>(vertices)) throw std::invalid_argument("add: the mesh exceeds the system");
+  const auto agrees = [&](const RestConfiguration& c) {
+    for (size_t v = 0; v < count; ++v) {
+      const double* kept = c.X.data() + 4 * (first + v);
+      if (c.known[first + v] && !std::equal(kept, kept + 3, d.rest.data() + 3 * v)) return false;
+    }
+    return true;
+  };
+  const auto found = std::find_if(configurations.begin(), configurations.end(), agrees);
+  term.configuration = static_cast<int>(found - configurations.begin());
+  if (found == configurations.end()) {
+    configurations.push_back({std::vector<char>(static_cast<size_t>(vertices), 0), AlignedVector<double>(x.size(), 0.0),
+                              AlignedVector<double>(x.size(), 0.0)});
+  }
+  RestConfiguration& c = configurations[static_cast<size_t>(term.configuration)];
+  for (size_t v = 0; v < count; ++v) {
+    c.known[first + v] = 1;
+    std::copy_n(d.rest.data() + 3 * v, 3, c.X.data() + 4 * (first + v));
   }
 }
 
@@ -118,7 +153,7 @@ Evaluation System::value(const Eigen::Matrix3Xd& x) {
 #pragma omp for schedule(dynamic, 1) nowait
     for (size_t chunk = 0; chunk < term.results.size(); ++chunk) {
       const lanes::BlockRange range = term.range(static_cast<int>(chunk));
-      term.operations->value(term.stencils, range, d.x.data(), &term.results[chunk]);
+      term.operations->value(term.stencils, range, d.points_of(term), &term.results[chunk]);
     }
   }
   return d.sum(true);
@@ -135,7 +170,7 @@ Evaluation System::gradient(const Eigen::Matrix3Xd& x, Eigen::Matrix3Xd& gradien
     for (size_t i = 0; i < d.gradient.size(); ++i) d.gradient[i] = 0;
     for (SystemTerm& term : d.terms) {
       over_colours(term, [&](int chunk) {
-        term.operations->gradient(term.stencils, term.range(chunk), d.x.data(), d.gradient.data(),
+        term.operations->gradient(term.stencils, term.range(chunk), d.points_of(term), d.gradient.data(),
                                   &term.results[static_cast<size_t>(chunk)]);
       });
     }
@@ -170,10 +205,11 @@ Evaluation System::hessian(const Eigen::Matrix3Xd& x, Projection projection, Eig
         const lanes::BlockRange range = term.range(chunk);
         lanes::ChunkResult* result = &term.results[static_cast<size_t>(chunk)];
         if (term.assembled()) {
-          term.operations->hessian(term.stencils, range, term.blocks(chunk), d.x.data(), static_cast<int>(projection),
-                                   room, d.gradient.data(), matrix.values().data(), result);
+          term.operations->hessian(term.stencils, range, term.blocks(chunk), d.points_of(term),
+                                   static_cast<int>(projection), room, d.gradient.data(), matrix.values().data(),
+                                   result);
         } else {
-          term.operations->gradient(term.stencils, range, d.x.data(), d.gradient.data(), result);
+          term.operations->gradient(term.stencils, range, d.points_of(term), d.gradient.data(), result);
         }
       });
     }

@@ -9,6 +9,13 @@
 
 namespace ergon {
 
+// Rest positions of some vertices of a system and how far the others moved from there, for densities whose q is F - I.
+struct RestConfiguration {
+  std::vector<char> known;             // per vertex
+  AlignedVector<double> X;             // 4 per vertex
+  AlignedVector<double> displacement;  // x - X, 4 per vertex
+};
+
 // One potential of a system with what evaluation needs beside its own data. Its stencils are cut into chunks, and the
 // chunks coloured so that no two of a colour share a vertex: colours follow one another, the chunks of one are
 // independent.
@@ -18,6 +25,7 @@ struct SystemTerm {
   Potential potential;
   const lanes::LaneOperations* operations = nullptr;
   lanes::Stencils stencils{};
+  int configuration = -1;  // among the system's rest configurations; -1: the kernel is given positions
 
   unsigned long coloured_stencils = 0;  // stencil_version that the colouring is of
   std::vector<int> chunks;              // in order of colour
@@ -72,7 +80,8 @@ struct System::Impl {
   std::vector<int> base_row;        // of each block: scalar rows below the start of its column
   std::vector<double> base_values;  // 9 per block, column by column
 
-  AlignedVector<double> x;         // 4 per vertex
+  AlignedVector<double> x;  // 4 per vertex
+  std::vector<RestConfiguration> configurations;
   AlignedVector<double> gradient;  // 4 per vertex
   struct Room {
     AlignedVector<double> sums;
@@ -91,6 +100,10 @@ struct System::Impl {
   // Assembles the constant Hessians again if one of them changed; uses matrix as room.
   void update_base(Projection projection, BlockMatrix& matrix);
   void load_positions(const Eigen::Matrix3Xd& positions);
+  // What a term's kernel is evaluated at: positions or displacements, 4 per vertex.
+  const double* points_of(const SystemTerm& term) const;
+  // Gives a term whose q is F - I a configuration that agrees with its rest positions.
+  void find_configuration(SystemTerm& term);
   // Called by all threads of a team: zeroes the matrix but for the base.
   void start_matrix(BlockMatrix& matrix) const;
   bool worth_threads() const;

@@ -45,7 +45,7 @@ void bench_case(const std::string& name, const std::string& case_name, const std
   rows.add({{"energy", case_name.empty() ? energy.name : energy.name + "/" + case_name},
             {"element", energy.geometry},
             {"read_s", read},
-            {"differentiate_s", t.lower + t.frontier + t.differentiate + t.structure},
+            {"differentiate_s", t.lower + t.frontier + t.differentiate + t.structure + t.principal},
             {"emit_s", t.schedule + t.emit},
             {"compile_s", t.compile},
             {"load_s", t.load},

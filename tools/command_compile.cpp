@@ -18,7 +18,8 @@ struct Options {
   std::string energy, catalogue, dump;
 };
 
-const std::vector<std::string> passes = {"lower", "frontier", "differentiate", "structure", "schedule", "emit"};
+const std::vector<std::string> passes = {"lower",     "frontier", "differentiate", "structure",
+                                         "principal", "schedule", "emit"};
 
 int compile_one(const Options& asked, std::ostream& out) {
   if (!asked.dump.empty()) chosen("--dump", asked.dump, passes);

@@ -1,6 +1,7 @@
 // The three evaluations of a range of blocks, for one vector width.
 
 #include "runtime/lanes/evaluate_hessian.h"
+#include "runtime/lanes/evaluate_isotropic.h"
 #include "runtime/lanes/evaluate_projection.h"
 
 namespace ergon::lanes {
@@ -117,7 +118,10 @@ void hessian_of(const Stencils& s, BlockRange range, const ChunkBlocks& blocks, 
   Vector3 points[S::kMost], by_point[S::kMost];
   const int n = S::points(s), pairs = n * (n + 1) / 2, batch = batch_of<S>(s), size = S::kPacked * kWidth;
   const bool project = projection != kProjectNone && !s.kernel->psd_hessian;
-  ProjectionBatch<S::kSize> indefinite(projection == kProjectAbsolute ? Negative::absolute : Negative::clamp);
+  const bool closed_form = project && s.kernel->principal != nullptr;
+  const Negative mode = projection == kProjectAbsolute ? Negative::absolute : Negative::clamp;
+  ProjectionBatch<S::kSize> indefinite(mode);
+  long changed = 0;
   double* element = room.scratch + static_cast<long>(batch) * s.quadrature * size;
   for (int first = range.first; first < range.last; first += batch) {
     const int last = first + batch < range.last ? first + batch : range.last;
@@ -131,10 +135,15 @@ void hessian_of(const Stencils& s, BlockRange range, const ChunkBlocks& blocks, 
       for (int p = 0; p < s.quadrature; ++p, packed += size) {
         const Weights<S> w(s, block, p);
         form_q<S>(s, w, points, q);
-        s.kernel->hessian(q, data_of(s, block), s.uniforms, value, by_q, packed);
+        if (closed_form) {
+          s.kernel->gradient(q, data_of(s, block), s.uniforms, value, by_q);
+          changed += closed_form_hessian<S>(s, block, count, q, mode, packed);
+        } else {
+          s.kernel->hessian(q, data_of(s, block), s.uniforms, value, by_q, packed);
+          if (project) indefinite.add(packed, ~definite<S::kSize>(packed) & ((1u << count) - 1));
+        }
         sum += w.times_volume(load(value));
         chain_gradient<S>(s, w, by_q, by_point);
-        if (project) indefinite.add(packed, ~definite<S::kSize>(packed) & ((1u << count) - 1));
       }
       tally.add(sum, count);
       if (gradient != nullptr) scatter_points<S>(s, block, count, by_point, gradient);
@@ -148,7 +157,7 @@ void hessian_of(const Stencils& s, BlockRange range, const ChunkBlocks& blocks, 
     }
   }
   flush_sums(room.sums, blocks, values);
-  *result = tally.result(indefinite.changed());
+  *result = tally.result(changed + indefinite.changed());
 }
 
 const LaneOperations kOperations = {

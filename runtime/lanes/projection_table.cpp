@@ -23,12 +23,8 @@ void store_vector(double* p, const Vector& a) {
   store(p + 2 * kWidth, a.z);
 }
 
-Svd3 decompose(const double* f) {
-  return svd3(load_vector(f), load_vector(f + 3 * kWidth), load_vector(f + 6 * kWidth));
-}
-
 void singular_values(const double* f, double* u, double* s, double* v) {
-  const Svd3 r = decompose(f);
+  const Svd3 r = svd3(load_vector(f), load_vector(f + 3 * kWidth), load_vector(f + 6 * kWidth));
   for (int i = 0; i < 3; ++i) {
     store_vector(u + 3 * i * kWidth, r.u[i]);
     store_vector(v + 3 * i * kWidth, r.v[i]);
@@ -36,16 +32,32 @@ void singular_values(const double* f, double* u, double* s, double* v) {
   }
 }
 
+template <int Q>
+Svd<Q> decompose_columns(const double* f) {
+  Vector columns[Q];
+  for (int c = 0; c < Q; ++c) columns[c] = load_vector(f + 3L * c * kWidth);
+  return decompose<Q>(columns);
+}
+
+template <int Q>
+void stretches(const double* f, double* s) {
+  const Svd<Q> r = decompose_columns<Q>(f);
+  for (int i = 0; i < Q; ++i) store(s + i * kWidth, r.s[i]);
+}
+
+template <int Q>
 unsigned isotropic(const double* f, const double* blocks, bool absolute, double* packed) {
-  IsotropicHessian h;
-  for (int i = 0; i < 6; ++i) h.stretch[i] = load(blocks + i * kWidth);
-  for (int i = 0; i < 3; ++i) {
-    h.twist[i] = load(blocks + (6 + i) * kWidth);
-    h.flip[i] = load(blocks + (9 + i) * kWidth);
-  }
+  IsotropicHessian<Q> h(blocks);
   const unsigned changed = project_isotropic(h, absolute ? Negative::absolute : Negative::clamp);
-  rotate_isotropic(decompose(f), h, packed);
+  rotate_isotropic(decompose_columns<Q>(f), h, packed);
   return changed;
+}
+
+template <int Q>
+void fill_isotropic(ProjectionTable& table) {
+  table.stretches[Q] = stretches<Q>;
+  table.isotropic[Q] = isotropic<Q>;
+  if constexpr (Q > 1) fill_isotropic<Q - 1>(table);
 }
 
 template <int N>
@@ -65,7 +77,7 @@ const ProjectionTable& ERGON_JOIN(projection_table_, ERGON_LANES)() {
     t.lanes = ERGON_LANES;
     fill<ProjectionTable::kLargest>(t);
     t.svd3 = singular_values;
-    t.isotropic = isotropic;
+    fill_isotropic<3>(t);
     return t;
   }();
   return table;

@@ -12,8 +12,11 @@ struct ProjectionTable {
   void (*project[kLargest + 1])(double* packed, bool absolute, unsigned lanes) = {};
   // F, U, V column by column: f[9][lanes] -> u[9][lanes], s[3][lanes], v[9][lanes]; see svd3 in runtime/lanes/svd3.h.
   void (*svd3)(const double* f, double* u, double* s, double* v) = nullptr;
-  // stretch[6], twist[3], flip[3] -> packed[45]; see runtime/lanes/projection_isotropic.h. Returns the changed lanes.
-  unsigned (*isotropic)(const double* f, const double* blocks, bool absolute, double* packed) = nullptr;
+  // Indexed by the columns of F: F[3*columns] and singular values s[columns] by the decomposition in use.
+  void (*stretches[4])(const double* f, double* s) = {};
+  // Indexed by the columns of F: its blocks (codegen/principal.h) -> packed Hessian, projected; see
+  // runtime/lanes/projection_isotropic.h. Returns the changed lanes.
+  unsigned (*isotropic[4])(const double* f, const double* blocks, bool absolute, double* packed) = {};
 };
 
 // Throws std::invalid_argument when this machine or build lacks that width.

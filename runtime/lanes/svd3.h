@@ -16,11 +16,11 @@ struct Svd3 {
 };
 
 // M = R(a) diag(s0, s1) R(b)' with rotations by the angles a and b, s0 >= |s1|.
-struct Svd2 {
+struct PlaneSvd {
   Real cos_a, sin_a, cos_b, sin_b, s0, s1;
 };
 
-inline Svd2 svd2(Real m00, Real m01, Real m10, Real m11) {
+inline PlaneSvd plane_svd(Real m00, Real m01, Real m10, Real m11) {
   // b diagonalises M'M: tan(2 b) = y/x.
   const Real x = (m00 * m00 + m10 * m10) - (m01 * m01 + m11 * m11);
   const Real y = 2 * (m00 * m01 + m10 * m11);
@@ -32,7 +32,7 @@ inline Svd2 svd2(Real m00, Real m01, Real m10, Real m11) {
   const Real inverse_larger = rsqrt(larger_squared);
   const Real larger = larger_squared * inverse_larger, smaller = 0.5 * sin_2b * inverse_larger;
   const Mask first = less_equal(splat(0), x);
-  Svd2 r;
+  PlaneSvd r;
   r.cos_b = select(first, larger, smaller);
   r.sin_b = copysign(select(first, smaller, larger), y);
   const Real p0 = m00 * r.cos_b + m01 * r.sin_b, p1 = m10 * r.cos_b + m11 * r.sin_b;
@@ -73,7 +73,7 @@ inline Svd3 svd3(const Vector& f0, const Vector& f1, const Vector& f2) {
   u[0] = select(less(splat(1e-290), squared), rsqrt(max(squared, splat(1e-290))) * u[0],
                 Vector{splat(1), splat(0), splat(0)});
   frame(u[0], u[1], u[2]);
-  const Svd2 r = svd2(dot(u[1], m1), dot(u[1], m2), dot(u[2], m1), dot(u[2], m2));
+  const PlaneSvd r = plane_svd(dot(u[1], m1), dot(u[1], m2), dot(u[2], m1), dot(u[2], m2));
 
   const Real s0 = size * dot(u[0], m0), s1 = size * r.s0, s2 = size * r.s1;
   const Vector u1 = r.cos_a * u[1] + r.sin_a * u[2], u2 = r.cos_a * u[2] + (-r.sin_a) * u[1];

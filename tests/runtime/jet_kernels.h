@@ -132,6 +132,29 @@ struct JetKernel {
     }
   }
 
+  // The blocks of codegen/principal.h, read from the Hessian at F = diag(s).
+  static void principal(const double* s, const double* e, const double* u, double* blocks) {
+    constexpr int n = Law::kVectors;
+    for (int l = 0; l < W; ++l) {
+      double q[kSize * W] = {};
+      for (int i = 0; i < n; ++i) q[4 * i * W + l] = s[i * W + l] - (Law::kDisplacement ? 1 : 0);
+      const J y = evaluate(q, e, u, l);
+      const auto h = [&](int a, int c, int b, int d) { return y.h(3 * c + a, 3 * d + b); };
+      double* out = blocks + l;
+      const auto give = [&](double value) { *out = value, out += W; };
+      for (int i = 0; i < n; ++i) {
+        for (int j = 0; j <= i; ++j) give(h(i, i, j, j));
+      }
+      for (const int sign : {-1, 1}) {
+        for (int k = 0; k < n * (n - 1) / 2; ++k) {
+          const int i = n == 3 ? (k + 1) % 3 : 0, j = n == 3 ? (k + 2) % 3 : 1;
+          give(h(i, j, i, j) + sign * h(i, j, j, i));
+        }
+      }
+      for (int i = 0; n < 3 && i < n; ++i) give(h(2, i, 2, i));
+    }
+  }
+
   static ErgonKernel make() {
     ErgonKernel k{};
     k.abi = ERGON_KERNEL_ABI;
@@ -155,6 +178,8 @@ struct JetKernel {
     k.value = value;
     k.gradient = gradient;
     k.hessian = hessian;
+    k.displacement = Law::kDisplacement;
+    k.principal = Law::kIsotropic ? principal : nullptr;
     k.point_names = Law::kPoints == 0 ? nullptr : Law::kPointNames.data();
     return k;
   }
@@ -171,7 +196,7 @@ Kernel kernel_of(int lanes) {
 }
 
 struct LawDefaults {
-  static constexpr int kRequires = 0, kConstant = 0, kZero = 0;
+  static constexpr int kRequires = 0, kConstant = 0, kZero = 0, kDisplacement = 0, kIsotropic = 0;
   template <class T>
   static double margin(const T*, const double*, const double*) {
     return std::numeric_limits<double>::infinity();
@@ -191,6 +216,38 @@ struct NeoHookeanLaw : LawDefaults {
     const T J = triple(F, F + 3, F + 6) - 1.0;
     const T I = dot(F, F) + dot(F + 3, F + 3) + dot(F + 6, F + 6) - 3.0;
     return 0.5 * u[0] * I - u[0] * J + 0.5 * u[1] * (J * J);
+  }
+};
+
+// A density with its closed form.
+template <class Law>
+struct Isotropic : Law {
+  static constexpr int kIsotropic = 1;
+};
+
+// A solid's density over F - I.
+template <class Law>
+struct Displaced : Law {
+  static constexpr int kDisplacement = 1;
+  template <class T>
+  static T psi(const T* q, const double* e, const double* u) {
+    const T F[9] = {q[0] + 1.0, q[1], q[2], q[3], q[4] + 1.0, q[5], q[6], q[7], q[8] + 1.0};
+    return Law::psi(F, e, u);
+  }
+};
+
+// A fibre: (|F|^2 - 1)^2.
+struct LineLaw : LawDefaults {
+  static constexpr const char* kName = "fibre";
+  static constexpr const char* kGeometry = "line";
+  static constexpr int kPoints = 0, kVectors = 1, kParams = 1, kRaw = 0;
+  static constexpr std::array<double, 1> kWeights{};
+  static constexpr std::array<const char*, 1> kPointNames{};
+  static constexpr std::array<ErgonInput, 1> kInputs{{{"k", ERGON_PARAM, 1, 1, 0}}};
+  template <class T>
+  static T psi(const T* F, const double*, const double* u) {
+    const T a = dot(F, F) - 1.0;
+    return u[0] * (a * a);
   }
 };
 

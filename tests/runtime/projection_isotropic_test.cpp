@@ -86,7 +86,7 @@ TEST_P(IsotropicTest, AgreesWithTheProjectedDenseHessian) {
     for (int lane = 0; lane < lanes; ++lane) {
       blocks(Vector3d(s[lane], s[lanes + lane], s[2 * lanes + lane]), b.data(), lanes, lane);
     }
-    const unsigned changed = table.isotropic(f.data(), b.data(), absolute, packed.data());
+    const unsigned changed = table.isotropic[3](f.data(), b.data(), absolute, packed.data());
     for (int lane = 0; lane < lanes; ++lane) {
       Matrix9d h;
       for (int i = 0; i < 9; ++i) {
@@ -118,7 +118,7 @@ TEST_P(IsotropicTest, NotFiniteStaysNotFinite) {
       blocks(Vector3d::Ones(), b.data(), lanes, lane);
     }
     b[entry * lanes] = std::numeric_limits<double>::quiet_NaN();
-    table.isotropic(f.data(), b.data(), false, packed.data());
+    table.isotropic[3](f.data(), b.data(), false, packed.data());
     bool finite = true;
     for (int i = 0; i < 45; ++i) finite = finite && std::isfinite(packed[i * lanes]);
     EXPECT_FALSE(finite) << entry;

@@ -101,7 +101,8 @@ TEST_F(CommandLine, CompilesOnceAndDumpsPasses) {
   EXPECT_THAT(ergon("compile my.energy").out, HasSubstr("; cached, checked in "));
   EXPECT_GT(ergon("compile my.energy --dump differentiate").out.size(), 20u);
   expect("compile my.energy --dump diferentiate", 2,
-         "--dump: 'diferentiate' is none of lower, frontier, differentiate, structure, schedule, emit; did you mean "
+         "--dump: 'diferentiate' is none of lower, frontier, differentiate, structure, principal, schedule, emit; did "
+         "you mean "
          "'differentiate'?");
   expect("compile", 2, "'ergon compile' needs an energy, or --catalogue FOLDER");
 }

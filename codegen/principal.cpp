@@ -1,0 +1,62 @@
+#include "codegen/principal.h"
+
+#include "codegen/rewrite.h"
+#include "symbolic/isotropy.h"
+
+namespace ergon {
+namespace {
+
+// The Hessian with diag(s) for F.
+class DiagonalHessian {
+ public:
+  explicit DiagonalHessian(Module& module) : module_(module) {
+    Graph& g = module.graph;
+    const std::vector<NodeId> order = reachable(g, module.hessian);
+    at_.assign(static_cast<size_t>(g.size()), -1);
+    for (NodeId id : order) at_[static_cast<size_t>(id)] = substitute(id);
+  }
+
+  // Entry of components (row a, column c) and (row b, column d) of F.
+  NodeId operator()(int a, int c, int b, int d) const {
+    const int i = 3 * c + a, j = 3 * d + b;
+    const int entry = i >= j ? i * (i + 1) / 2 + j : j * (j + 1) / 2 + i;
+    return at_[static_cast<size_t>(module_.hessian[static_cast<size_t>(entry)])];
+  }
+
+ private:
+  NodeId substitute(NodeId id) {
+    Graph& g = module_.graph;
+    const Node n = g[id];
+    if (n.kind != Node::Kind::input || n.source != Source::q) return copy_node(g, id, at_, g);
+    if (n.index % 4 != 0) return g.constant(0);
+    const NodeId s = g.input(Source::stretch, n.index / 4);
+    g.set_name(s, "s" + std::to_string(n.index / 4));
+    return module_.displacement ? g.sum(-1, {{1, s}}) : s;
+  }
+
+  Module& module_;
+  std::vector<NodeId> at_;
+};
+
+}  // namespace
+
+void find_principal(Module& module) {
+  if (module.points != 0 || module.constant_hessian || module.psd_hessian) return;
+  if (!is_isotropic(*module.energy, module.case_name)) return;
+  Graph& g = module.graph;
+  const DiagonalHessian h(module);
+  const int axes = module.q_vectors;
+  for (int i = 0; i < axes; ++i)
+    for (int j = 0; j <= i; ++j) module.principal.push_back(h(i, i, j, j));
+  const auto twist = [&](int i, int j) { return g.subtract(h(i, j, i, j), h(i, j, j, i)); };
+  const auto flip = [&](int i, int j) { return g.add(h(i, j, i, j), h(i, j, j, i)); };
+  if (axes == 3) {
+    for (int k = 0; k < 3; ++k) module.principal.push_back(twist((k + 1) % 3, (k + 2) % 3));
+    for (int k = 0; k < 3; ++k) module.principal.push_back(flip((k + 1) % 3, (k + 2) % 3));
+    return;
+  }
+  if (axes == 2) module.principal.insert(module.principal.end(), {twist(0, 1), flip(0, 1)});
+  for (int i = 0; i < axes; ++i) module.principal.push_back(h(2, i, 2, i));
+}
+
+}  // namespace ergon
