@@ -1,19 +1,49 @@
 #include "symbolic/checks.h"
 
+#include <algorithm>
+#include <array>
+
 #include "symbolic/exact_checks.h"
 
 namespace ergon {
+namespace {
+
+std::vector<Finding> check_case(const Energy& energy, const std::string& name) {
+  std::vector<Finding> findings;
+  auto add = [&](std::optional<Finding> finding) {
+    if (finding) findings.push_back(std::move(*finding));
+  };
+  add(check_defined(energy, name));
+  // What is not defined at random states has no limits worth looking for.
+  if (findings.front().severity == Severity::ok)
+    for (const auto& check : {check_smooth, check_boundaries})
+      for (Finding& finding : check(energy, name)) findings.push_back(std::move(finding));
+  for (const auto& check :
+       {check_rigid_motion, check_rest, check_moduli, check_stable_at_rest, check_range, check_inversion})
+    add(check(energy, name));
+  return findings;
+}
+
+}  // namespace
+
+std::string_view to_string(Severity severity) {
+  constexpr std::array<std::string_view, 4> words = {"ok", "note", "warning", "error"};
+  return words[static_cast<size_t>(severity)];
+}
+
+std::string to_string(const Finding& finding) {
+  std::string text = finding.place.line > 0 ? to_string(finding.place) + ": " : "";
+  text += finding.message;
+  return finding.state.empty() ? text : text + ", at " + finding.state;
+}
 
 std::vector<Finding> check_energy(const Energy& energy) {
   std::vector<Finding> findings;
   const std::vector<std::string> cases = energy.cases.empty() ? std::vector<std::string>{""} : energy.cases;
   for (const std::string& name : cases) {
-    for (const auto& check :
-         {check_defined, check_rigid_motion, check_rest, check_moduli, check_stable_at_rest, check_inversion}) {
-      std::optional<Finding> finding = check(energy, name);
-      if (!finding) continue;
-      if (!name.empty()) finding->message = "case " + name + ": " + finding->message;
-      findings.push_back(std::move(*finding));
+    for (Finding& finding : check_case(energy, name)) {
+      if (!name.empty()) finding.message = "case " + name + ": " + finding.message;
+      findings.push_back(std::move(finding));
     }
   }
   return findings;

@@ -30,6 +30,9 @@ class DoubleAlgebra {
   }
   void named(const std::string&, int, int, double) const {}
 
+  bool is_zero(double a) const { return a == 0; }
+  bool less(double a, double b) const { return a < b; }
+
   double call(Function f, const std::vector<double>& x) const {
     switch (f) {
       case Function::sqrt:

@@ -12,6 +12,9 @@
 //   Scalar input(const Symbol& symbol, int component);          column by column
 //   void named(const std::string& let, int component, int size, const Scalar& value);   a let's component was formed;
 //                                                    it may return a Scalar that stands for it from then on
+// and, when it wants to know where it is in the text,
+//   void at(const Expression& e);                              the operations that follow are those of e
+//   void formed(const Expression& e, const std::vector<Scalar>& components);   the result of e
 
 #include <string>
 #include <vector>

@@ -62,6 +62,17 @@ class Elaborator {
   S scalar(const Expression& e) { return tensor(e).at[0]; }
 
   T tensor(const Expression& e) {
+    T t = evaluated(e);
+    if constexpr (requires { a_.formed(e, t.at); }) a_.formed(e, t.at);
+    return t;
+  }
+
+  // Tells an algebra that wants to know which expression the operations from here on belong to.
+  void at(const Expression& e) {
+    if constexpr (requires { a_.at(e); }) a_.at(e);
+  }
+
+  T evaluated(const Expression& e) {
     switch (e.kind) {
       case Kind::number:
         return op_.scalar(a_.number(e.text));
@@ -70,7 +81,7 @@ class Elaborator {
       case Kind::negate:
         return op_.negate(tensor(*e.arguments[0]));
       case Kind::power:
-        return op_.scalar(power(*e.arguments[0], *e.arguments[1]));
+        return op_.scalar(power(e));
       case Kind::transpose:
         return op_.transpose(tensor(*e.arguments[0]));
       case Kind::index:
@@ -84,6 +95,7 @@ class Elaborator {
     }
     const T left = tensor(*e.arguments[0]);
     const T right = tensor(*e.arguments[1]);
+    at(e);
     switch (e.kind) {
       case Kind::add:
         return op_.add(left, right);
@@ -96,14 +108,17 @@ class Elaborator {
     }
   }
 
-  S power(const Expression& base_text, const Expression& exponent_text) {
-    const S base = scalar(base_text);
+  S power(const Expression& e) {
+    const S base = scalar(*e.arguments[0]);
+    const Expression& exponent_text = *e.arguments[1];
+    at(e);
     if (const auto constant = constant_exponent(exponent_text)) {
       if (*constant == Exponent{1, 1}) return base;
       if (constant->num == 0) return a_.number("1");
       return a_.power(base, static_cast<long>(constant->num), static_cast<long>(constant->den));
     }
     const S exponent = scalar(exponent_text);
+    at(e);
     return a_.power(base, exponent);
   }
 
@@ -127,11 +142,12 @@ class Elaborator {
   T call(const Expression& e) {
     const std::string& f = e.text;
     const auto& text = e.arguments;
-    if (f == "pow") return op_.scalar(power(*text[0], *text[1]));
+    if (f == "pow") return op_.scalar(power(e));
     if (f == "identity") return op_.identity(whole(*text[0]));
     if (f == "column") return op_.column(tensor(*text[0]), whole(*text[1]));
     std::vector<T> t;
     for (const ExpressionPtr& argument : text) t.push_back(tensor(*argument));
+    at(e);
     if (const auto function = function_named(f)) {
       std::vector<S> arguments;
       for (const T& x : t) arguments.push_back(x.at[0]);

@@ -10,6 +10,12 @@ namespace ergon {
 // Value and derivatives are real and finite wherever the conditions hold.
 std::optional<Finding> check_defined(const Energy& energy, const std::string& case_name);
 
+// Twice differentiable inside the domain: the worst at each place of the text where it is not.
+std::vector<Finding> check_smooth(const Energy& energy, const std::string& case_name);
+
+// Begins smoothly where `active` begins to hold, and does not fall without bound where `require` ends.
+std::vector<Finding> check_boundaries(const Energy& energy, const std::string& case_name);
+
 // The value keeps under rotation and translation, or the energy states `frame fixed` and it does not.
 std::optional<Finding> check_rigid_motion(const Energy& energy, const std::string& case_name);
 
@@ -21,6 +27,10 @@ std::optional<Finding> check_moduli(const Energy& energy, const std::string& cas
 
 // Small strains of the undeformed state cost energy.
 std::optional<Finding> check_stable_at_rest(const Energy& energy, const std::string& case_name);
+
+// How far a solid may be stretched and pressed along one axis until a small strain gives energy away, between a
+// hundredth and a hundredfold of its length.
+std::optional<Finding> check_range(const Energy& energy, const std::string& case_name);
 
 // A solid is finite for det(F) < 0, or `require` keeps it away from there.
 std::optional<Finding> check_inversion(const Energy& energy, const std::string& case_name);

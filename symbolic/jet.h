@@ -5,6 +5,7 @@
 // Beyond what symbolic/elaborate.h asks of an algebra, B supplies
 //   bool is_zero(const Scalar&);                 exactly zero, whatever the inputs
 //   bool less(const Scalar&, const Scalar&);
+// Derivatives may be limited to the first ones, and taken by every symbol instead of the dofs alone.
 // The derivative of abs at 0 is 1; where the arguments of min or max are equal, the first is taken.
 
 #include <string>
@@ -28,9 +29,14 @@ class JetAlgebra {
   using S = typename B::Scalar;
   using Scalar = Jet<S>;
 
-  // The components of the energy's dofs, in order of declaration, are the variables.
-  JetAlgebra(const Energy& energy, B& base) : b_(base), zero_(base.number("0")), one_(base.number("1")) {
-    for (const Symbol* dof : energy.with_role(Role::dof)) n_ += dof->shape.size();
+  enum class Variables { dofs, all };
+  enum class Order { first, second };
+
+  // The components of the energy's dofs (or of all its symbols), in order of declaration, are the variables.
+  JetAlgebra(const Energy& energy, B& base, Order order = Order::second, Variables variables = Variables::dofs)
+      : b_(base), zero_(base.number("0")), one_(base.number("1")), order_(order), of_(variables) {
+    for (const Symbol& symbol : energy.symbols)
+      if (varies(symbol)) n_ += symbol.shape.size();
   }
 
   int variables() const { return n_; }
@@ -39,7 +45,7 @@ class JetAlgebra {
 
   Scalar input(const Symbol& symbol, int component) {
     Scalar r{b_.input(symbol, component), {}, {}};
-    if (symbol.role != Role::dof) return r;
+    if (!varies(symbol)) return r;
     r.gradient.assign(static_cast<size_t>(n_), zero_);
     r.gradient[static_cast<size_t>(next_++)] = one_;
     return r;
@@ -155,11 +161,14 @@ class JetAlgebra {
     }
   }
 
+  bool varies(const Symbol& symbol) const { return of_ == Variables::all || symbol.role == Role::dof; }
+
   size_t packed() const { return static_cast<size_t>(n_) * (static_cast<size_t>(n_) + 1) / 2; }
 
   Scalar chain(const Scalar& x, S value, const S& first, const S& second) {
     Scalar r{std::move(value), {}, {}};
     add_scaled(r.gradient, first, x.gradient, static_cast<size_t>(n_));
+    if (order_ == Order::first) return r;
     add_scaled(r.hessian, first, x.hessian, packed());
     add_outer(r.hessian, second, x.gradient, x.gradient);
     return r;
@@ -169,6 +178,7 @@ class JetAlgebra {
     Scalar r{std::move(value), {}, {}};
     add_scaled(r.gradient, f.x, x.gradient, static_cast<size_t>(n_));
     add_scaled(r.gradient, f.y, y.gradient, static_cast<size_t>(n_));
+    if (order_ == Order::first) return r;
     add_scaled(r.hessian, f.x, x.hessian, packed());
     add_scaled(r.hessian, f.y, y.hessian, packed());
     add_outer(r.hessian, f.xx, x.gradient, x.gradient);
@@ -232,6 +242,8 @@ class JetAlgebra {
 
   B& b_;
   S zero_, one_;
+  Order order_;
+  Variables of_;
   int n_ = 0;
   int next_ = 0;
 };

@@ -6,12 +6,16 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "symbolic/blame.h"
 #include "symbolic/eigenvalues.h"
 #include "symbolic/elaborate.h"
 #include "symbolic/exact_checks.h"
 #include "symbolic/ginac_algebra.h"
 #include "symbolic/jet.h"
+#include "symbolic/print.h"
 #include "symbolic/sample_states.h"
+#include "symbolic/state_text.h"
+#include "symbolic/typing.h"
 
 namespace ergon {
 namespace {
@@ -80,20 +84,6 @@ Largest largest(const std::vector<ClnNumber>& entries) {
     if (size > result.size) result = {size, i};
   }
   return result;
-}
-
-std::string component_name(const Energy& energy, size_t index) {
-  for (const Symbol* dof : energy.with_role(Role::dof)) {
-    const auto size = static_cast<size_t>(dof->shape.size());
-    if (index >= size) {
-      index -= size;
-      continue;
-    }
-    const size_t rows = static_cast<size_t>(dof->shape.rows);
-    return dof->shape.cols == 1 ? fmt::format("{}[{}]", dof->name, index)
-                                : fmt::format("{}[{},{}]", dof->name, index % rows, index / rows);
-  }
-  throw std::logic_error("a component beyond the dofs");
 }
 
 const char* where(const Energy& energy) {
@@ -166,6 +156,25 @@ std::vector<std::vector<double>> strains(const Energy& energy) {
   return basis;
 }
 
+// "mu/2*(tr(F'*F) - 3) gives 4, la/2*(det(F) - 1)^2 gives 0": where the value is a sum.
+std::string terms_text(const std::vector<Term>& terms) {
+  std::vector<std::string> texts;
+  for (const Term& term : terms)
+    texts.push_back(fmt::format("{} gives {:.4g}", to_text(*term.expression), term.derivative + 0.0));
+  return texts.size() < 2 ? "" : fmt::format(" ({})", fmt::join(texts, ", "));
+}
+
+// Young's modulus and Poisson's ratio that a stiffness at F = I has, where it is isotropic.
+std::string moduli_text(const Jet<ClnNumber>& jet) {
+  const double mu = hessian_entry(jet, 1, 1), la = hessian_entry(jet, 0, 4);
+  for (size_t i = 0; i < 9; ++i)
+    for (size_t j = 0; j <= i; ++j)
+      if (!(std::fabs(hessian_entry(jet, i, j) - isotropic_entry<double>(i, j, la, mu)) < 1e-12)) return "";
+  if (!(std::fabs(la + mu) > 1e-12)) return "";
+  return fmt::format("; these are the moduli E = {:.4g} Pa and nu = {:.4g}", mu * (3 * la + 2 * mu) / (la + mu),
+                     la / (2 * (la + mu)) + 0.0);
+}
+
 }  // namespace
 
 std::optional<Finding> check_rest(const Energy& energy, const std::string& case_name) {
@@ -177,28 +186,44 @@ std::optional<Finding> check_rest(const Energy& energy, const std::string& case_
   for (int i = 0; i < 3; ++i) {
     const auto state = rest_state(energy, case_name, sampler);
     if (!state)
-      return Finding{Severity::warning, "rest", fmt::format("not checked: `require` does not hold {}", where(energy))};
-    if (gradient_vanishes_exactly(energy, case_name, *state)) {
+      return Finding{
+          Severity::warning, "rest", fmt::format("not checked: `require` does not hold {}", where(energy)), {}, ""};
+    const auto jet = derivatives(energy, case_name, ClnAlgebra(*state, digits));
+    const Largest found = largest(jet.gradient);
+    if (found.size <= tolerance && gradient_vanishes_exactly(energy, case_name, *state)) {
       if (density) break;  // it holds for all parameters
       continue;
     }
     exact = false;
-    const auto jet = derivatives(energy, case_name, ClnAlgebra(*state, digits));
-    const Largest found = largest(jet.gradient);
     if (found.size <= tolerance) continue;
-    if (std::isnan(found.size))
-      return Finding{Severity::error, "rest", fmt::format("the {} is not finite {}", stress, where(energy))};
+    if (std::isnan(found.size)) {
+      const Expression& part = *first_undefined(energy, case_name, *state);
+      return Finding{Severity::error, "rest",
+                     fmt::format("the {} is not finite {}, because {} or its derivatives are not; write it without a "
+                                 "root or quotient that is 0 there",
+                                 stress, where(energy), to_text(part)),
+                     start_of(part), state_text(energy, *state)};
+    }
+    const auto terms = terms_at(energy, case_name, *state, found.index);
+    const auto most = std::max_element(terms.begin(), terms.end(), [](const auto& a, const auto& b) {
+      return std::fabs(a.derivative) < std::fabs(b.derivative);
+    });
     return Finding{density && !has_moduli(energy) ? Severity::warning : Severity::error, "rest",
-                   fmt::format("not {}-free {}: the derivative by {} is {:.4g}, expected 0", stress, where(energy),
-                               component_name(energy, found.index), to_double(jet.gradient[found.index]))};
+                   fmt::format("not {}-free {}: the derivative by {} is {:.4g}{}, expected 0{}", stress, where(energy),
+                               component_name(energy, found.index), to_double(jet.gradient[found.index]),
+                               derivative_unit(energy, 1), terms_text(terms)),
+                   start_of(*most->expression), state_text(energy, *state)};
   }
-  return Finding{Severity::ok, "rest",
-                 fmt::format("{}-free {} ({})", stress, where(energy), exact ? "exactly" : "to 38 digits")};
+  return Finding{Severity::ok,
+                 "rest",
+                 fmt::format("{}-free {} ({})", stress, where(energy), exact ? "exactly" : "to 38 digits"),
+                 {},
+                 ""};
 }
 
 std::optional<Finding> check_moduli(const Energy& energy, const std::string& case_name) {
   if (!has_moduli(energy)) return std::nullopt;
-  const Finding good{Severity::ok, "moduli", "the linearisation at F = I has the moduli E and nu"};
+  const Finding good{Severity::ok, "moduli", "the linearisation at F = I has the moduli E and nu", {}, ""};
   if (moduli_match_exactly(energy, case_name)) {
     Finding finding = good;
     finding.message += " (exactly)";
@@ -206,10 +231,11 @@ std::optional<Finding> check_moduli(const Energy& energy, const std::string& cas
   }
   StateSampler sampler;
   auto state = rest_state(energy, case_name, sampler);
-  if (!state) return Finding{Severity::warning, "moduli", "not checked: `require` does not hold at F = I"};
+  if (!state) return Finding{Severity::warning, "moduli", "not checked: `require` does not hold at F = I", {}, ""};
   state->at("E") = {Rational(1)};
   state->at("nu") = {Rational(1) / 4};
   const auto jet = derivatives(energy, case_name, ClnAlgebra(*state, digits));
+  if (!jet.value.defined) return std::nullopt;  // check_rest tells
   for (size_t i = 0; i < 9; ++i) {
     for (size_t j = 0; j <= i; ++j) {
       const double found = hessian_entry(jet, i, j);
@@ -218,8 +244,10 @@ std::optional<Finding> check_moduli(const Energy& energy, const std::string& cas
       return Finding{
           Severity::error, "moduli",
           fmt::format("with E = 1 Pa and nu = 0.25 the second derivative by {} and {} at F = I is {:.4g} Pa, "
-                      "expected {:.4g} Pa",
-                      component_name(energy, j), component_name(energy, i), found, expected)};
+                      "expected {:.4g} Pa{}; give the params other names, or form the value from mu = E/(2*(1 + nu)) "
+                      "and la = E*nu/((1 + nu)*(1 - 2*nu))",
+                      component_name(energy, j), component_name(energy, i), found, expected, moduli_text(jet)),
+          start_of(*energy.value), state_text(energy, *state)};
     }
   }
   return good;
@@ -231,6 +259,7 @@ std::optional<Finding> check_stable_at_rest(const Energy& energy, const std::str
   const int n = static_cast<int>(basis.size());
   StateSampler sampler;
   double weakest = 1;  // smallest eigenvalue over the largest
+  std::string weakest_state;
   for (int sample = 0; sample < 8; ++sample) {
     const auto state = rest_state(energy, case_name, sampler);
     if (!state) return std::nullopt;  // check_rest tells
@@ -246,23 +275,34 @@ std::optional<Finding> check_stable_at_rest(const Energy& energy, const std::str
       }
     }
     const auto eigenvalues = symmetric_eigenvalues(matrix, n);
-    if (std::isnan(eigenvalues.front()))
-      return Finding{Severity::error, "stable at rest", fmt::format("the stiffness is not finite {}", where(energy))};
+    if (std::isnan(eigenvalues.front())) {
+      const Expression* part = first_undefined(energy, case_name, *state);
+      return Finding{Severity::error, "stable at rest",
+                     fmt::format("the stiffness is not finite {}, because {} or its derivatives are not", where(energy),
+                                 to_text(part == nullptr ? *energy.value : *part)),
+                     start_of(part == nullptr ? *energy.value : *part), state_text(energy, *state)};
+    }
     const double scale = std::max(std::fabs(eigenvalues.front()), std::fabs(eigenvalues.back()));
-    weakest = std::min(weakest, scale > 0 ? eigenvalues.front() / scale : 0);
+    const double here = scale > 0 ? eigenvalues.front() / scale : 0;
+    if (here < weakest) {
+      weakest = here;
+      weakest_state = state_text(energy, *state);
+    }
   }
   const bool density = energy.kind == Energy::Kind::density;
   const char* motion = density ? "strain" : "displacement";
   if (weakest < -1e-12)
     return Finding{Severity::error, "stable at rest",
                    fmt::format("a small {} {} gives energy away: the smallest eigenvalue of the stiffness is {:.2g} of "
-                               "the largest",
-                               motion, where(energy), weakest)};
+                               "the largest; change a sign or narrow the ranges",
+                               motion, where(energy), weakest),
+                   start_of(*energy.value), weakest_state};
   if (density && weakest < 1e-12)
     return Finding{Severity::warning, "stable at rest",
-                   fmt::format("some small strain {} costs nothing", where(energy))};
+                   fmt::format("some small strain {} costs nothing", where(energy)), start_of(*energy.value),
+                   weakest_state};
   const char* costs = density ? "every small strain costs energy " : "no small displacement gives energy away ";
-  return Finding{Severity::ok, "stable at rest", std::string(costs) + where(energy)};
+  return Finding{Severity::ok, "stable at rest", std::string(costs) + where(energy), {}, ""};
 }
 
 }  // namespace ergon

@@ -4,11 +4,16 @@
 
 #include <stdexcept>
 
+#include "symbolic/blame.h"
 #include "symbolic/elaborate.h"
 #include "symbolic/exact_checks.h"
 #include "symbolic/ginac_algebra.h"
 #include "symbolic/jet.h"
+#include "symbolic/limits.h"
+#include "symbolic/print.h"
 #include "symbolic/sample_states.h"
+#include "symbolic/state_text.h"
+#include "symbolic/typing.h"
 
 namespace ergon {
 namespace {
@@ -32,20 +37,8 @@ bool defined(const ClnJet& jet) {
   return jet.value.defined;
 }
 
-std::string state_text(const Energy& energy, const ExactInputs& inputs) {
-  std::string text;
-  for (const Symbol& symbol : energy.symbols) {
-    std::vector<std::string> components;
-    for (const Rational& value : inputs.at(symbol.name))
-      components.push_back(fmt::format("{:.4g}", cln::double_approx(value)));
-    text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", symbol.name,
-                        components.size() == 1 ? components[0] : fmt::format("[{}]", fmt::join(components, ", ")));
-  }
-  return text;
-}
-
 Finding no_state(const char* check) {
-  return {Severity::warning, check, "not checked: no random state satisfies `active` and `require`"};
+  return {Severity::warning, check, "not checked: no random state satisfies `active` and `require`", {}, ""};
 }
 
 // Every dof rotated, column by column; points are translated too.
@@ -91,18 +84,24 @@ std::optional<Finding> check_defined(const Energy& energy, const std::string& ca
   for (int i = 0; i < 6; ++i) {
     const auto state = sampler.admissible(energy, case_name);
     if (!state) return no_state("defined");
-    if (!defined(derivatives(energy, case_name, *state).value))
-      return Finding{Severity::error, "defined",
-                     fmt::format("value or derivatives are not finite where all conditions hold, at {}",
-                                 state_text(energy, *state))};
+    const Elaborated<ClnJet> result = derivatives(energy, case_name, *state);
+    if (defined(result.value)) continue;
+    const Expression* part = first_undefined(energy, case_name, *state);
+    const char* what = result.value.value.defined ? "its derivatives are" : "the value is";
+    return Finding{Severity::error, "defined",
+                   fmt::format("{} is not real and finite where all conditions hold, and with it {} not either; keep "
+                               "away from there by a range or `require`",
+                               part == nullptr ? "the value" : to_text(*part), what),
+                   start_of(part == nullptr ? *energy.value : *part), state_text(energy, *state)};
   }
-  return Finding{Severity::ok, "defined", "value and derivatives are finite at random states"};
+  return Finding{Severity::ok, "defined", "value and derivatives are finite at random states", {}, ""};
 }
 
 std::optional<Finding> check_rigid_motion(const Energy& energy, const std::string& case_name) {
   StateSampler sampler;
   double change = 0;
   bool exact = true;
+  std::optional<std::pair<ExactInputs, ExactInputs>> worst;
   for (int i = 0; i < 3; ++i) {
     const auto state = sampler.admissible(energy, case_name);
     if (!state) return no_state("rigid motion");
@@ -111,22 +110,43 @@ std::optional<Finding> check_rigid_motion(const Energy& energy, const std::strin
     if (exactly_equal(energy, case_name, *state, other)) continue;
     exact = false;
     const double found = relative_change(energy, case_name, *state, other);
-    change = found < 0 ? 1 : std::max(change, found);
+    if (found >= 0 && found <= change) continue;
+    change = found < 0 ? 1 : found;
+    worst = {*state, other};
   }
   const bool invariant = change <= tolerance;
   const char* motion = energy.kind == Energy::Kind::density ? "rotation" : "rotation and translation";
   if (invariant && energy.fixed_frame)
-    return Finding{Severity::warning, "rigid motion",
-                   fmt::format("the value keeps under {}, yet the energy states `frame fixed`; remove it", motion)};
+    return Finding{Severity::warning,
+                   "rigid motion",
+                   fmt::format("the value keeps under {}, yet the energy states `frame fixed`; remove it", motion),
+                   {},
+                   ""};
   if (invariant)
-    return Finding{Severity::ok, "rigid motion",
-                   fmt::format("the value keeps under {} ({})", motion, exact ? "exactly" : "to 38 digits")};
+    return Finding{Severity::ok,
+                   "rigid motion",
+                   fmt::format("the value keeps under {} ({})", motion, exact ? "exactly" : "to 38 digits"),
+                   {},
+                   ""};
   if (energy.fixed_frame)
-    return Finding{Severity::ok, "rigid motion",
-                   fmt::format("the value changes under {}, as `frame fixed` states", motion)};
-  return Finding{Severity::error, "rigid motion",
-                 fmt::format("the value changes under {} (by {:.2g} of itself); state `frame fixed` if that is meant",
-                             motion, change)};
+    return Finding{Severity::ok,
+                   "rigid motion",
+                   fmt::format("the value changes under {}, as `frame fixed` states", motion),
+                   {},
+                   ""};
+  const auto& [before, after] = *worst;
+  ClnAlgebra first(before, digits), second(after, digits);
+  ExactInputs dofs;
+  for (const Symbol* dof : energy.with_role(Role::dof)) dofs[dof->name] = after.at(dof->name);
+  const Expression& part = first_change(energy, case_name, before, after);
+  return Finding{
+      Severity::error, "rigid motion",
+      fmt::format(
+          "the value changes under {}, from {:.6g} to {:.6g}{}, because {} does; state `frame fixed` if that is "
+          "meant",
+          motion, to_double(elaborate(energy, case_name, first).value),
+          to_double(elaborate(energy, case_name, second).value), derivative_unit(energy, 0), to_text(part)),
+      start_of(part), fmt::format("{} and {}", state_text(energy, before), state_text(energy, dofs))};
 }
 
 std::optional<Finding> check_inversion(const Energy& energy, const std::string& case_name) {
@@ -145,12 +165,38 @@ std::optional<Finding> check_inversion(const Energy& energy, const std::string& 
     bool kept_away = false;
     for (const ClnJet& margin : result.require)
       kept_away = kept_away || !margin.value.defined || !cln::plusp(margin.value.value);
-    if (!kept_away)
-      return Finding{Severity::warning, "inversion",
-                     "not finite for det(F) < 0, and no `require` keeps away from there; add `require det(F) > 0`"};
+    if (kept_away) continue;
+    const Expression* part = first_undefined(energy, case_name, inputs);
+    return Finding{Severity::warning, "inversion",
+                   fmt::format("{} is not finite for det(F) < 0, and no `require` keeps away from there; add `require "
+                               "det(F) > 0`",
+                               to_text(*part)),
+                   start_of(*part), state_text(energy, inputs)};
   }
-  return Finding{Severity::ok, "inversion",
-                 finite ? "finite at inversion" : "not finite at inversion; `require` keeps away from it"};
+  if (!finite)
+    return Finding{Severity::ok, "inversion", "not finite at inversion; `require` keeps away from it", {}, ""};
+  ExactInputs flat = sampler.any(energy);
+  flat.at("F") = undeformed({3, 3});
+  flat.at("F")[8] = Rational(0);
+  const Limit limit = limit_at(energy, case_name, flat, true);
+  if (limit.effect >= Effect::value_grows) {
+    const auto sites = vanishing_sites(energy, case_name, flat);
+    const Expression& part = sites.empty() ? *energy.value : *sites.front().expression;
+    return Finding{Severity::warning, "inversion",
+                   fmt::format("{} is infinite at det(F) = 0 but finite on both sides of it, and no `require` keeps a "
+                               "step from crossing; add `require det(F) > 0`",
+                               to_text(part)),
+                   start_of(part), state_text(energy, flat)};
+  }
+  ExactInputs mirrored = flat;
+  mirrored.at("F")[8] = Rational(-1);
+  ExactInputs rest = flat;
+  rest.at("F")[8] = Rational(1);
+  if (relative_change(energy, case_name, rest, mirrored) == 0)
+    return Finding{Severity::note, "inversion",
+                   "an inverted element has the energy of the undeformed one, so nothing turns it back",
+                   start_of(*energy.value), state_text(energy, mirrored)};
+  return Finding{Severity::ok, "inversion", "finite at inversion", {}, ""};
 }
 
 }  // namespace ergon

@@ -10,27 +10,45 @@
 #include "symbolic/checks.h"
 #include "tools/command.h"
 #include "tools/installation.h"
+#include "tools/rows.h"
 
 namespace ergon {
 namespace {
 
-int check(const std::string& name, std::ostream& out) {
+const char* kind_of(const Energy& energy) { return energy.kind == Energy::Kind::density ? "density" : "energy"; }
+
+std::string plural(int count, const char* what) { return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s"); }
+
+int check(const std::string& name, bool json, std::ostream& out) {
   const Energy energy = find_energy(name);
   const std::vector<Finding> findings = check_energy(energy);
-  constexpr std::array words = {"ok", "warning", "error"};
-  std::array<int, 3> counts{};
+  std::array<int, 4> counts{};
   size_t width = 0;
-  for (const Finding& finding : findings) width = std::max(width, finding.check.size());
-  out << fmt::format("{}: {} {}, {}\n", energy.file, energy.kind == Energy::Kind::density ? "density" : "energy",
-                     energy.name, energy.geometry);
   for (const Finding& finding : findings) {
-    const auto severity = static_cast<size_t>(finding.severity);
-    ++counts[severity];
-    out << fmt::format("  {:<7}  {:<{}}  {}\n", words[severity], finding.check, width, finding.message);
+    width = std::max(width, finding.check.size());
+    ++counts[static_cast<size_t>(finding.severity)];
   }
-  out << fmt::format("{}: {} ok, {} warning{}, {} error{}\n", counts[2] == 0 ? "sound" : "not sound", counts[0],
-                     counts[1], counts[1] == 1 ? "" : "s", counts[2], counts[2] == 1 ? "" : "s");
-  return counts[2] == 0 ? exit_done : exit_failed;
+  const int code = counts[3] == 0 ? exit_done : exit_failed;
+  if (json) {
+    Rows rows(out, true);
+    for (const Finding& f : findings)
+      rows.add({{"energy", energy.name},
+                {"severity", to_string(f.severity)},
+                {"check", f.check},
+                {"message", f.message},
+                {"place", f.place.line > 0 ? to_string(f.place) : ""},
+                {"state", f.state}});
+    return code;
+  }
+  out << fmt::format("{}: {} {}, {}\n", energy.file, kind_of(energy), energy.name, energy.geometry);
+  for (const Finding& f : findings) {
+    const std::string place = f.place.line > 0 ? to_string(f.place) + ": " : "";
+    out << fmt::format("  {:<7}  {:<{}}  {}{}\n", to_string(f.severity), f.check, width, place, f.message);
+    if (!f.state.empty()) out << fmt::format("  {:<{}}  at {}\n", "", width + 9, f.state);
+  }
+  out << fmt::format("{}: {} ok, {}, {}, {}\n", counts[3] == 0 ? "sound" : "not sound", counts[0],
+                     plural(counts[1], "note"), plural(counts[2], "warning"), plural(counts[3], "error"));
+  return code;
 }
 
 }  // namespace
@@ -39,7 +57,9 @@ void add_check_command(CLI::App& app, Run& run) {
   CLI::App* command = app.add_subcommand("check", "Tells whether an energy is sound");
   auto name = std::make_shared<std::string>();
   command->add_option("energy", *name, "an .energy file, or a name in the catalogue")->required();
-  command->callback([name, &run] { run = [name](std::ostream& out) { return check(*name, out); }; });
+  auto json = std::make_shared<bool>(false);
+  command->add_flag("--json", *json, "one JSON object per finding instead of text");
+  command->callback([name, json, &run] { run = [name, json](std::ostream& out) { return check(*name, *json, out); }; });
 }
 
 }  // namespace ergon

@@ -3,24 +3,23 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <sstream>
 
 #include "symbolic/eigenvalues.h"
+#include "symbolic/reference.h"
 #include "symbolic/sample_states.h"
 #include "tests/symbolic/energy_files.h"
 
 namespace ergon {
 namespace {
 
-std::string told(const Finding& f) {
-  const char* severity = f.severity == Severity::ok ? "ok" : f.severity == Severity::warning ? "warning" : "error";
-  return std::string(severity) + " " + f.check + ": " + f.message;
-}
+std::string told(const Finding& f) { return std::string(to_string(f.severity)) + " " + f.check + ": " + f.message; }
 
-// The findings that are not ok.
+// Warnings and errors.
 std::vector<std::string> faults(const Energy& energy) {
   std::vector<std::string> result;
   for (const Finding& f : check_energy(energy))
-    if (f.severity != Severity::ok) result.push_back(told(f));
+    if (f.severity >= Severity::warning) result.push_back(told(f));
   return result;
 }
 
@@ -50,110 +49,64 @@ TEST(Checks, SolidsAreCheckedExactly) {
   for (const Finding& f : check_energy(read_energy(ERGON_SOURCE_DIR "/energies/solids/neo_hookean.energy")))
     all.push_back(told(f));
   EXPECT_EQ(all, (std::vector<std::string>{"ok defined: value and derivatives are finite at random states",
+                                           "ok smooth: no kink and no pole was found inside the domain",
                                            "ok rigid motion: the value keeps under rotation (exactly)",
                                            "ok rest: stress-free at F = I (exactly)",
                                            "ok moduli: the linearisation at F = I has the moduli E and nu (exactly)",
                                            "ok stable at rest: every small strain costs energy at F = I",
+                                           "ok stiffness: every small strain costs energy from 0.01 to 3.79 times the "
+                                           "length along one axis (E = 1, nu = 0.3)",
                                            "ok inversion: not finite at inversion; `require` keeps away from it"}));
 }
 
-// At nu = 0.25 the shear modulus is half of what E and nu give; towards nu = -1 volume changes then give energy away.
-const Faults half_the_shear = {
-    "error moduli: with E = 1 Pa and nu = 0.25 the second derivative by F[0,0] and F[0,0] at F = I is 0.8 Pa, expected "
-    "1.2 Pa",
-    "error stable at rest: a small strain at F = I gives energy away: the smallest eigenvalue of the stiffness is "
-    "-0.93 "
-    "of the largest"};
-
-TEST(Checks, StressAtRest) {
-  Faults expected = {"error rest: not stress-free at F = I: the derivative by F[0,0] is 4, expected 0"};
-  expected.insert(expected.end(), half_the_shear.begin(), half_the_shear.end());
-  EXPECT_EQ(faults(solid("value mu/2*(tr(F'*F) - 3) + la/2*(det(F) - 1)^2\n")), expected);
+// The state of a finding is one that `ergon eval` takes; here it is read back, to the digits that it is told with.
+TEST(Checks, TheStateShowsTheFault) {
+  const Energy e = solid("let J = det(F)\nvalue mu/2*(tr(F'*F) - 3) + la/2*(J - 1)^2 + mu*abs(J - 2)\n");
+  bool found = false;
+  for (const Finding& f : check_energy(e)) {
+    if (f.check != "smooth") continue;
+    found = true;
+    EXPECT_EQ(f.severity, Severity::error);
+    EXPECT_EQ(to_string(f.place), "e.energy:7:49");
+    Inputs inputs;
+    std::istringstream words(f.state);
+    for (std::string word; words >> word;) {
+      if (word == "--set") continue;
+      const size_t equals = word.find('=');
+      std::istringstream numbers(word.substr(equals + 1));
+      for (std::string number; std::getline(numbers, number, ',');)
+        inputs[word.substr(0, equals)].push_back(std::stod(number));
+    }
+    const std::vector<double>& F = inputs.at("F");
+    const double J =
+        F[0] * (F[4] * F[8] - F[5] * F[7]) - F[3] * (F[1] * F[8] - F[2] * F[7]) + F[6] * (F[1] * F[5] - F[2] * F[4]);
+    EXPECT_NEAR(J, 2, 1e-10);
+    EXPECT_EQ(inputs.size(), 3u);
+  }
+  EXPECT_TRUE(found);
 }
 
-TEST(Checks, WrongModuli) {
-  EXPECT_EQ(faults(solid("let G = (F'*F - identity(3))/2\nvalue mu/2*norm2(G) + la/2*tr(G)^2\n")), half_the_shear);
+// Smoothed kinks, and kinks of parts that are flat there, are none.
+TEST(Checks, WhatIsSmoothIsNotBlamed) {
+  for (const char* term : {"mu*max(J - 2, 0)^3", "mu*abs(J - 2)^3", "mu*sqrt((J - 2)^2 + 0.01)", "mu*sqrt(norm2(F))^4",
+                           "mu*norm(F)^2", "mu*(sqrt(abs(J - 2)))^8", "mu*exp(-(J - 2)^2)"}) {
+    const Energy e = solid(std::string("let J = det(F)\nvalue la*J + ") + term + "\n");
+    for (const Finding& f : check_energy(e)) {
+      if (f.check == "smooth") {
+        EXPECT_EQ(f.severity, Severity::ok) << term << ": " << to_string(f);
+      }
+    }
+  }
 }
 
-TEST(Checks, RotationChangesTheValue) {
-  const Faults found = faults(solid("let strain = sym(F) - identity(3)\nvalue mu*norm2(strain) + la/2*tr(strain)^2\n"));
-  ASSERT_EQ(found.size(), 1u);
-  EXPECT_TRUE(found[0].starts_with("error rigid motion: the value changes under rotation (by ")) << found[0];
-  EXPECT_TRUE(found[0].ends_with("of itself); state `frame fixed` if that is meant")) << found[0];
-}
-
-TEST(Checks, FrameIsNotFixed) {
+// Poles at the open end of a range, or where `require` ends, are outside.
+TEST(Checks, PolesAtTheBoundaryAreOutside) {
+  EXPECT_EQ(faults(solid("let G = (F'*F - identity(3))/2\nvalue mu*norm2(G) + la/2*tr(G)^2\n")), Faults{});
   EXPECT_EQ(
-      faults(solid("frame fixed\nlet G = (F'*F - identity(3))/2\nvalue mu*norm2(G) + la/2*tr(G)^2\n")),
-      (Faults{"warning rigid motion: the value keeps under rotation, yet the energy states `frame fixed`; remove it"}));
-}
-
-TEST(Checks, TranslationChangesTheValue) {
-  const Energy e = parse_energy("energy e point\ndof x m\nparam k N/m (0, inf)\nvalue k/2*norm2(x)\n", "e.energy");
-  const Faults found = faults(e);
-  ASSERT_EQ(found.size(), 1u);
-  EXPECT_TRUE(found[0].starts_with("error rigid motion: the value changes under rotation and translation")) << found[0];
-}
-
-TEST(Checks, InversionIsNotKeptAway) {
-  EXPECT_EQ(
-      faults(solid("let J = det(F)\nvalue mu/2*(tr(F'*F) - 3) - mu*log(J) + la/2*log(J)^2\n")),
-      (Faults{"warning inversion: not finite for det(F) < 0, and no `require` keeps away from there; add `require "
-              "det(F) > 0`"}));
-}
-
-TEST(Checks, SignErrorIsUnstable) {
-  const Energy e = parse_energy(
-      "density e solid\nparam k Pa (0, inf)\nlet G = (F'*F - identity(3))/2\nvalue -k*norm2(G)\n", "e.energy");
-  EXPECT_EQ(faults(e),
-            (Faults{"error stable at rest: a small strain at F = I gives energy away: the smallest eigenvalue of "
-                    "the stiffness is -1 of the largest"}));
-}
-
-TEST(Checks, VolumeTermAloneIsOnlySemiDefinite) {
-  const Energy e = parse_energy("density e solid\nparam k Pa (0, inf)\nvalue k/2*(det(F) - 1)^2\n", "e.energy");
-  EXPECT_EQ(faults(e), (Faults{"warning stable at rest: some small strain at F = I costs nothing"}));
-}
-
-TEST(Checks, ForceAtRestPositions) {
-  const Energy e = parse_energy(
-      "energy e edge\ndof x0 x1 m\nrest X0[3] X1[3] m\nparam k N/m (0, inf)\nlet L = norm(X1 - X0)\nrequire L > 0\n"
-      "value k/2*(norm(x1 - x0) - L/2)^2\n",
-      "e.energy");
-  const Faults found = faults(e);
-  ASSERT_GE(found.size(), 1u);
-  EXPECT_TRUE(found[0].starts_with("error rest: not force-free at the rest positions: the derivative by x"))
-      << found[0];
-}
-
-TEST(Checks, NotFiniteWhereConditionsHold) {
-  const Energy e = parse_energy(
-      "energy e edge\ndof x0 x1 m\nparam L m (0, inf)\nparam k J (0, inf)\nvalue k*log(norm(x1 - x0)/L - 1)\n",
-      "e.energy");
-  const Faults found = faults(e);
-  ASSERT_GE(found.size(), 1u);
-  EXPECT_TRUE(
-      found[0].starts_with("error defined: value or derivatives are not finite where all conditions hold, at x0 = ["))
-      << found[0];
-}
-
-TEST(Checks, ConditionsThatNeverHoldAreTold) {
-  const Energy e = parse_energy(
-      "energy e edge\ndof x0 x1 m\nparam k N/m (0, inf)\nlet d2 = norm2(x1 - x0)\nactive d2 < 0\nvalue k*d2\n",
-      "e.energy");
-  EXPECT_EQ(faults(e), (Faults{"warning defined: not checked: no random state satisfies `active` and `require`",
-                               "warning rigid motion: not checked: no random state satisfies `active` and `require`"}));
-}
-
-TEST(Checks, EveryCaseIsChecked) {
-  const Energy e = parse_energy(
-      "energy e edge\ndof x0 x1 m\nparam k N/m (0, inf)\ncase pair d2 = norm2(x1 - x0)\ncase origin d2 = norm2(x1 + "
-      "x0)\n"
-      "value k*d2\n",
-      "e.energy");
-  const Faults found = faults(e);
-  ASSERT_EQ(found.size(), 1u);
-  EXPECT_TRUE(found[0].starts_with("error rigid motion: case origin: the value changes")) << found[0];
+      faults(parse_energy("energy e edge\ndof x0 x1 m\nrest X0[3] X1[3] m\nparam k J (0, inf)\nlet L = norm2(X1 - "
+                          "X0)\nrequire L > 0\nvalue k/2*(norm2(x1 - x0)/L - 1)^2\n",
+                          "e.energy")),
+      Faults{});
 }
 
 TEST(Checks, MembraneAndLineDensities) {
@@ -168,6 +121,7 @@ TEST(Checks, MembraneAndLineDensities) {
 TEST(Checks, HingeIsSound) {
   const Energy e = parse_energy(
       "energy e hinge\ndof x0 x1 x2 x3 m\nrest X0[3] X1[3] X2[3] X3[3] m\nparam k J (0, inf)\n"
+      "require norm2(cross(X1 - X0, X2 - X0)) > 0\nrequire norm2(cross(X1 - X0, X3 - X0)) > 0\n"
       "let rest = dihedral(X0, X1, X2, X3)\nvalue k/2*(dihedral(x0, x1, x2, x3) - rest)^2\n",
       "e.energy");
   EXPECT_EQ(faults(e), Faults{});
