@@ -12,6 +12,7 @@
 #include "runtime/solver/stopwatch.h"
 #include "scenes/laws.h"
 #include "scenes/start_check.h"
+#include "symbolic/checks.h"
 
 namespace ergon {
 namespace {
@@ -58,6 +59,21 @@ std::vector<UsedLaw> object_laws(const SceneObject& object, Laws& laws) {
     const Energy& energy = laws.get(use.law, use.at("law"));
     check_supported(energy, use);
     out.push_back({&energy, checked_params(energy, use)});
+  }
+  return out;
+}
+
+// What is unsound in the scene's own energies, each checked once.
+std::vector<std::string> law_warnings(const Scene& scene, const std::vector<std::vector<UsedLaw>>& used) {
+  std::vector<std::string> out;
+  std::set<const Energy*> checked;
+  for (size_t i = 0; i < used.size(); ++i) {
+    for (size_t j = 0; j < used[i].size(); ++j) {
+      const Energy& energy = *used[i][j].energy;
+      if (!scene.objects[i].energies[j].law.ends_with(".energy") || !checked.insert(&energy).second) continue;
+      for (const Finding& finding : check_energy(energy))
+        if (finding.severity >= Severity::warning) out.push_back(to_string(finding));
+    }
   }
   return out;
 }
@@ -203,6 +219,7 @@ BuiltScene build_scene(const Scene& scene, const Catalogue& catalogue, const Ker
     Stopwatch watch(out.seconds.energies);
     for (const SceneObject& object : scene.objects) used.push_back(object_laws(object, laws));
     world = world_laws(scene, laws, out.skipped);
+    out.warnings = law_warnings(scene, used);
   }
   {
     Stopwatch watch(out.seconds.meshes);

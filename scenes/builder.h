@@ -39,6 +39,9 @@ struct BuiltScene {
   StepOptions step;
   long steps = 0;
   std::vector<std::string> skipped;  // what was left out, "part: reason"
+  // Faults of energies that the scene names by file, as check_energy tells them; those of the catalogue are checked by
+  // its tests.
+  std::vector<std::string> warnings;
   BuildSeconds seconds;
 };
 

@@ -89,6 +89,7 @@ RunSummary summary_of_start(const Scene& scene, const BuiltScene& built, double 
   out.start_energy = out.end_energy = start_energy;
   out.build = built.seconds;
   for (const std::string& text : built.skipped) out.skipped.emplace_back(text, 0);
+  out.warnings = built.warnings;
   return out;
 }
 

@@ -86,6 +86,7 @@ std::string to_json(const RunSummary& s) {
     auto [part, reason] = part_and_reason(text);
     json["skipped"].push_back({{"part", part}, {"reason", reason}, {"steps", steps}});
   }
+  json["warnings"] = s.warnings;
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 

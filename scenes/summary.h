@@ -38,6 +38,7 @@ struct RunSummary {
   double output_seconds = 0;
   // What was left out, "part: reason", with the number of steps in which it was; 0 for what the scene never needed.
   std::vector<std::pair<std::string, long>> skipped;
+  std::vector<std::string> warnings;  // as in BuiltScene
 
   double total_seconds() const { return build.total() + step_seconds.total + output_seconds; }
 };

@@ -38,10 +38,11 @@ std::string range_in_unit(const Symbol& symbol) {
   return to_string(symbol.range) + (symbol.unit.dimensionless() ? "" : " " + to_string(symbol.unit));
 }
 
-std::map<std::string, std::vector<double>> read_assignments(const Energy& energy,
-                                                            const std::vector<std::string>& texts) {
+std::map<std::string, std::vector<double>> read_assignments(const Energy& energy, const std::vector<std::string>& texts,
+                                                            bool dofs) {
   std::vector<std::string> names;
-  for (Role role : {Role::param, Role::rest, Role::lag}) {
+  for (Role role : {Role::dof, Role::param, Role::rest, Role::lag}) {
+    if (role == Role::dof && !dofs) continue;
     for (const Symbol* symbol : energy.with_role(role)) names.push_back(symbol->name);
   }
   std::map<std::string, std::vector<double>> values;
@@ -50,7 +51,7 @@ std::map<std::string, std::vector<double>> read_assignments(const Energy& energy
     if (equals == std::string::npos) throw InputError(fmt::format("--set: '{}' is not NAME=VALUE", text));
     const std::string name = text.substr(0, equals);
     const Symbol* symbol = energy.find(name);
-    if (symbol == nullptr || symbol->role == Role::dof) {
+    if (symbol == nullptr || (symbol->role == Role::dof && !dofs)) {
       throw InputError(fmt::format("--set: {} has no input '{}' (its inputs: {}){}", energy.name, name,
                                    fmt::join(names, ", "), did_you_mean(name, names)));
     }

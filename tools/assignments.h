@@ -11,9 +11,10 @@
 namespace ergon {
 
 // Values in SI by name. Throws InputError for a text without '=', a name that is no param, rest or lag of the energy
-// (with the nearest), a name given twice, a wrong number of components, a wrong unit, a value outside its range.
-std::map<std::string, std::vector<double>> read_assignments(const Energy& energy,
-                                                            const std::vector<std::string>& texts);
+// (with the nearest; with `dofs`, these may be given too), a name given twice, a wrong number of components, a wrong
+// unit, a value outside its range.
+std::map<std::string, std::vector<double>> read_assignments(const Energy& energy, const std::vector<std::string>& texts,
+                                                            bool dofs = false);
 
 // "(0, inf) Pa", "(-1, 0.5)".
 std::string range_in_unit(const Symbol& symbol);

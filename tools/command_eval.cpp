@@ -2,13 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <ostream>
 
 #include "runtime/error.h"
 #include "runtime/lanes/lanes.h"
 #include "runtime/mesh/mesh_import.h"
+#include "symbolic/reference.h"
 #include "tools/assignments.h"
 #include "tools/choices.h"
 #include "tools/command.h"
@@ -51,7 +54,33 @@ double frobenius(const BlockMatrix& matrix) {
   return std::sqrt(sum);
 }
 
+// One stencil, or one point of quadrature, whose state is given by --set: as the text means it, in 50 digits.
+int eval_state(const Options& options, std::ostream& out) {
+  const Energy energy = find_energy(options.energy);
+  const std::string case_name = only_case(energy, options.case_name);
+  const Values values = read_assignments(energy, options.set, true);
+  for (const Symbol& symbol : energy.symbols) {
+    if (values.contains(symbol.name)) continue;
+    throw InputError(fmt::format("without --mesh every input is given by --set; '{}' is missing", symbol.name));
+  }
+  const ReferenceValue found = evaluate_reference(energy, case_name, values);
+  auto norm = [](const std::vector<double>& x) {
+    return Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size())).norm();
+  };
+  auto smallest = [](const std::vector<double>& x) {
+    return x.empty() ? std::numeric_limits<double>::infinity() : *std::min_element(x.begin(), x.end());
+  };
+  Rows(out, options.json)
+      .add({{"value", found.value},
+            {"gradient_norm", norm(found.gradient)},
+            {"hessian_frobenius", norm(found.hessian)},
+            {"require", smallest(found.require)},
+            {"active", smallest(found.active)}});
+  return exit_done;
+}
+
 int eval(const Options& options, std::ostream& out) {
+  if (options.mesh.empty()) return eval_state(options, out);
   const Projection projection = projection_named(options.projection);
   const Energy energy = find_energy(options.energy);
   const std::string case_name = only_case(energy, options.case_name);
@@ -92,9 +121,13 @@ void add_eval_command(CLI::App& app, Run& run) {
   CLI::App* command = app.add_subcommand("eval", "Evaluates an energy with its derivatives on a mesh");
   auto options = std::make_shared<Options>();
   command->add_option("energy", options->energy, "a name in the catalogue, or an .energy file")->required();
-  command->add_option("--mesh", options->mesh, "rest state: .msh, or a surface .obj, .stl, .ply")->required();
+  command->add_option("--mesh", options->mesh,
+                      "rest state: .msh, or a surface .obj, .stl, .ply; without: one state given by --set");
   command->add_option("--positions", options->positions, "text file, 'x y z' (m) per vertex; default: the rest state");
-  command->add_option("--set", options->set, "NAME=VALUE of a param, rest or lag; may be repeated")->take_all();
+  command
+      ->add_option("--set", options->set,
+                   "NAME=VALUE of a param, rest or lag, without a mesh of a dof too; may be repeated")
+      ->take_all();
   command->add_option("--case", options->case_name, "case of the energy, when it has several");
   command->add_option("--project", options->projection, "negative eigenvalues: clamp, abs or none");
   command->add_option("--gradient", options->gradient_file, "Matrix Market file to write");

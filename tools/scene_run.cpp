@@ -66,6 +66,7 @@ RunSummary run_scene_file(const SceneRun& options) {
   run.stop = [] { return interrupted != 0; };
   if (options.progress == nullptr) return run_scene(scene, built, run);
 
+  for (const std::string& warning : built.warnings) *options.progress << "warning  " << warning << '\n';
   *options.progress << start_line(scene, built) << std::flush;
   Progress progress(*options.progress, isatty(STDOUT_FILENO) != 0, static_cast<int>(built.steps));
   run.progress = [&progress](const StepRecord& record, long) {

@@ -131,5 +131,21 @@ TEST_F(Eval, BadInputIsNamed) {
   expect_error("spring --mesh none.msh --set k=1", "none.msh: cannot be opened: No such file or directory");
 }
 
+TEST_F(Eval, OneStateIsEvaluatedWithoutAMesh) {
+  const Answer answer =
+      ergon("eval spring --set x0=0,0,0 --set x1=3,0,0 --set X0=0,0,0 --set X1=1,0,0 --set k=2 --json");
+  EXPECT_EQ(answer.code, 0) << answer.err;
+  const auto row = nlohmann::json::parse(answer.out);
+  EXPECT_EQ(row["value"], 4);
+  EXPECT_DOUBLE_EQ(row["gradient_norm"].get<double>(), std::sqrt(32.0));
+  EXPECT_EQ(row["require"], 1);
+  EXPECT_TRUE(row["active"].is_null());
+  const Answer collapsed = ergon("eval spring --set x0=0,0,0 --set x1=0,0,0 --set X0=0,0,0 --set X1=1,0,0 --set k=2");
+  EXPECT_EQ(collapsed.code, 0);
+  EXPECT_THAT(collapsed.out, testing::HasSubstr("nan"));
+  EXPECT_EQ(ergon("eval spring --set k=2").err,
+            "ergon: error: without --mesh every input is given by --set; 'x0' is missing\n");
+}
+
 }  // namespace
 }  // namespace ergon

@@ -45,6 +45,23 @@ TEST_F(RunCommand, QuietSaysOnlyWhereTheOutputIs) {
   EXPECT_EQ(answer.out, "output: out/block\n");
 }
 
+TEST_F(RunCommand, WarnsOfUnsoundEnergiesOfTheScene) {
+  write("kinked.energy",
+        "# With a kink at twice the volume.\ndensity kinked solid\nparam mu Pa (0, inf)\nvalue mu*norm2(F'*F - "
+        "identity(3)) + mu*max(det(F) - 2, 0)\n");
+  write("own.toml",
+        "[time]\ndt = 0.01\nsteps = 1\n[[object]]\nname = \"b\"\nbox = { size = [0.1, 0.1, 0.1], cells = [1, 1, 1] "
+        "}\ndensity = 1000\n[[object.energy]]\nlaw = \"kinked.energy\"\nmu = 1e5\n");
+  const Answer answer = ergon("run own.toml --out results --threads 1");
+  EXPECT_EQ(answer.code, 0) << answer.err;
+  EXPECT_THAT(answer.out, testing::StartsWith("warning  kinked.energy:4:41: the derivative by "));
+  const auto summary = nlohmann::json::parse(read("results/summary.json"));
+  ASSERT_EQ(summary["warnings"].size(), 1u);
+  EXPECT_EQ("warning  " + summary["warnings"][0].get<std::string>(), answer.out.substr(0, answer.out.find('\n')));
+  ergon("run block.toml --out sound --threads 1");
+  EXPECT_EQ(nlohmann::json::parse(read("sound/summary.json"))["warnings"].size(), 0u);
+}
+
 TEST_F(RunCommand, BadScenesLeaveNothingBehind) {
   EXPECT_EQ(ergon("run nothing.toml --out results").code, 2);
   write("bad.toml", "[tim]\ndt = 0.01\n");
