@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "runtime/error.h"
-#include "runtime/mesh/element.h"
+#include "runtime/mesh/quadrature.h"
 #include "runtime/potential_data.h"
 
 namespace ergon {

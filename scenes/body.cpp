@@ -77,7 +77,7 @@ Mesh load_mesh(const SceneObject& object, const std::string& folder) {
     mesh = file_mesh(object, path);
   else
     mesh = filled_mesh(object, path);
-  if (object.element == "tet10" && mesh.element == Element::tet4) mesh = to_tet10(mesh);
+  if (object.element == "tet10" && mesh.element == Element::tet4) mesh = to_quadratic(mesh, Element::tet10);
   mesh.source = object.box ? "box of object '" + object.name + "'" : path;
   check_mesh(mesh);
   return mesh;

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "runtime/error.h"
+#include "runtime/mesh/element_faces.h"
 #include "runtime/mesh/mesh_tools.h"
 #include "runtime/solver/stopwatch.h"
 #include "scenes/laws.h"
@@ -95,13 +96,10 @@ class Kernels {
 
 std::vector<int> edges_of(const Body& body) {
   const int per_cell = nodes_of(body.ordered.element);
-  // Corners of a tetrahedron and of a brick in VTK order.
-  const std::vector<std::pair<int, int>> tet = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
-  const std::vector<std::pair<int, int>> hex = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6},
-                                                {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
+  const std::vector<std::array<int, 2>> corners = corner_edges(body.ordered.element);
   std::set<std::pair<int, int>> edges;
   for (size_t first = 0; first < body.ordered.cells.size(); first += static_cast<size_t>(per_cell))
-    for (auto [a, b] : body.ordered.element == Element::hex8 ? hex : tet)
+    for (auto [a, b] : corners)
       edges.insert(std::minmax(body.ordered.cells[first + static_cast<size_t>(a)],
                                body.ordered.cells[first + static_cast<size_t>(b)]));
   std::vector<int> out;

@@ -12,50 +12,16 @@
 #include "tools/stencils.h"
 
 namespace ergon {
-namespace {
-
-Mesh square_of_triangles(int cells) {
-  Mesh mesh;
-  mesh.element = Element::tri3;
-  const int row = cells + 1;
-  mesh.X.resize(3, row * row);
-  for (int j = 0; j < row; ++j) {
-    for (int i = 0; i < row; ++i) mesh.X.col(j * row + i) << double(i) / cells, double(j) / cells, 0;
-  }
-  for (int j = 0; j < cells; ++j) {
-    for (int i = 0; i < cells; ++i) {
-      const int a = j * row + i;
-      mesh.cells.insert(mesh.cells.end(), {a, a + 1, a + row + 1, a, a + row + 1, a + row});
-    }
-  }
-  return mesh;
-}
-
-}  // namespace
 
 Mesh sample_mesh(Element element, int cells) {
   if (cells < 1) throw InputError(fmt::format("{} cells per edge; at least 1 is needed", cells));
   const Eigen::Vector3d size = Eigen::Vector3d::Ones();
   const std::array<int, 3> counts = {cells, cells, cells};
-  switch (element) {
-    case Element::tet4:
-      return box_tets(size, counts);
-    case Element::tet10:
-      return to_tet10(box_tets(size, counts));
-    case Element::hex8:
-      return box_hexes(size, counts);
-    case Element::tri3:
-      return square_of_triangles(cells);
-    case Element::edge2: {
-      Mesh mesh = box_tets(size, counts);
-      mesh.cells = stencils_on_mesh("edge", mesh);
-      mesh.element = Element::edge2;
-      return mesh;
-    }
-    case Element::point:
-      break;
-  }
-  throw InputError(fmt::format("there is no sample mesh of {} elements", name_of(element)));
+  if (dimension_of(element) != 1) return box_mesh(element, size, counts);
+  Mesh mesh = box_tets(size, counts);
+  mesh.cells = stencils_on_mesh("edge", mesh);
+  mesh.element = Element::edge2;
+  return element == Element::edge2 ? mesh : to_quadratic(mesh, element);
 }
 
 Eigen::Matrix3Xd displaced(const Eigen::Matrix3Xd& X, double spacing, double amplitude) {

@@ -13,8 +13,8 @@
 
 namespace ergon {
 
-// A cube of 1 m with `cells` cells per edge. Tet4 and Tet10: each cell is cut into six tetrahedra around one diagonal.
-// Tri3: a square of 1 m, each cell cut in two. Edge2: the edges of the Tet4 mesh. Throws InputError for cells < 1.
+// A cube (square) of 1 m with `cells` cells per edge, cut as box_mesh says; lines: the edges of the Tet4 mesh. Throws
+// InputError for cells < 1 and for points.
 Mesh sample_mesh(Element element, int cells);
 
 // The rest positions, displaced by smooth noise whose largest component is `amplitude` (m): a sum of three plane waves

@@ -7,28 +7,11 @@
 #include <map>
 
 #include "runtime/error.h"
+#include "runtime/mesh/element_faces.h"
 #include "tools/sample.h"
 
 namespace ergon {
 namespace {
-
-// Pairs of corners (by their place in the cell) that an edge joins.
-std::vector<std::array<int, 2>> corner_edges(Element element) {
-  switch (element) {
-    case Element::point:
-      return {};
-    case Element::edge2:
-      return {{0, 1}};
-    case Element::tri3:
-      return {{0, 1}, {1, 2}, {2, 0}};
-    case Element::tet4:
-    case Element::tet10:
-      return {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
-    case Element::hex8:
-      return {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
-  }
-  return {};
-}
 
 std::vector<int> edges_of(const Mesh& mesh) {
   const std::vector<std::array<int, 2>> corners = corner_edges(mesh.element);

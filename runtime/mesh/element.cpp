@@ -1,32 +1,128 @@
 #include "runtime/mesh/element.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/LU>
 #include <algorithm>
-#include <array>
 #include <cctype>
-#include <cmath>
-#include <numeric>
 
 #include "runtime/error.h"
+#include "runtime/nearest.h"
 
 namespace ergon {
 namespace {
 
+// Nodes are written as digits, one for each axis: 0, 1 and 2 stand for 0, 1/2 and 1.
 struct ElementRow {
   Element element;
   const char* name;
-  int nodes;
+  ReferenceShape shape;
   int dimension;
-  int vtk_cell_type;  // vtkCellType.h
+  int degree;
+  int vtk_cell_type;
+  const char* nodes;
 };
 
-constexpr std::array<ElementRow, 6> kElements{{{Element::point, "Point", 1, 0, 1},
-                                               {Element::edge2, "Edge2", 2, 1, 3},
-                                               {Element::tri3, "Tri3", 3, 2, 5},
-                                               {Element::tet4, "Tet4", 4, 3, 10},
-                                               {Element::tet10, "Tet10", 10, 3, 24},
-                                               {Element::hex8, "Hex8", 8, 3, 12}}};
+// Corners of a cube, and the nodes amid its edges.
+#define ERGON_CUBE_CORNERS "000 200 220 020 002 202 222 022"
+#define ERGON_CUBE_EDGES " 100 210 120 010 102 212 122 012 001 201 221 021"
+
+constexpr ElementRow kElements[] = {
+    {Element::point, "Point", ReferenceShape::point, 0, 0, 1, "000"},
+    {Element::edge2, "Edge2", ReferenceShape::edge, 1, 1, 3, "000 200"},
+    {Element::edge3, "Edge3", ReferenceShape::edge, 1, 2, 21, "000 200 100"},
+    {Element::tri3, "Tri3", ReferenceShape::triangle, 2, 1, 5, "000 200 020"},
+    {Element::tri6, "Tri6", ReferenceShape::triangle, 2, 2, 22, "000 200 020 100 110 010"},
+    {Element::quad4, "Quad4", ReferenceShape::quadrilateral, 2, 1, 9, "000 200 220 020"},
+    {Element::quad9, "Quad9", ReferenceShape::quadrilateral, 2, 2, 28, "000 200 220 020 100 210 120 010 110"},
+    {Element::tet4, "Tet4", ReferenceShape::tetrahedron, 3, 1, 10, "000 200 020 002"},
+    {Element::tet10, "Tet10", ReferenceShape::tetrahedron, 3, 2, 24, "000 200 020 002 100 110 010 001 101 011"},
+    {Element::hex8, "Hex8", ReferenceShape::hexahedron, 3, 1, 12, ERGON_CUBE_CORNERS},
+    {Element::hex20, "Hex20", ReferenceShape::hexahedron, 3, 2, 25, ERGON_CUBE_CORNERS ERGON_CUBE_EDGES},
+    {Element::hex27, "Hex27", ReferenceShape::hexahedron, 3, 2, 29,
+     ERGON_CUBE_CORNERS ERGON_CUBE_EDGES " 011 211 101 121 110 112 111"},
+    {Element::prism6, "Prism6", ReferenceShape::prism, 3, 1, 13, "000 200 020 002 202 022"}};
 
 const ElementRow& row_of(Element element) { return kElements[static_cast<size_t>(element)]; }
+
+using Exponents = std::array<int, 3>;
+
+bool spans(const ElementRow& row, const Exponents& e) {
+  for (int axis = row.dimension; axis < 3; ++axis) {
+    if (e[static_cast<size_t>(axis)] > 0) return false;
+  }
+  switch (row.shape) {
+    case ReferenceShape::edge:
+    case ReferenceShape::triangle:
+    case ReferenceShape::tetrahedron:
+      return e[0] + e[1] + e[2] <= row.degree;
+    case ReferenceShape::prism:
+      return e[0] + e[1] <= row.degree && e[2] <= row.degree;
+    default:
+      break;
+  }
+  if (row.element != Element::hex20) return std::max({e[0], e[1], e[2]}) <= row.degree;
+  int superlinear = 0;  // the total degree without variables that enter linearly
+  for (const int power : e) superlinear += power > 1 ? power : 0;
+  return superlinear <= row.degree;
+}
+
+// Shape functions as sums of monomials: N_a = sum_m coefficients(m, a) x^exponents[m]. With nodes at 0, 1/2 and 1 all
+// coefficients are whole numbers.
+struct Basis {
+  std::vector<Eigen::Vector3d> nodes;
+  std::vector<Exponents> exponents;
+  Eigen::MatrixXd coefficients;
+};
+
+// The powers 0 to 2 of each coordinate.
+using Powers = std::array<std::array<double, 3>, 3>;
+
+Powers powers_of(const Eigen::Vector3d& point) {
+  Powers powers;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    const double x = point(static_cast<Eigen::Index>(axis));
+    powers[axis] = {1, x, x * x};
+  }
+  return powers;
+}
+
+double monomial(const Exponents& e, const Powers& p) {
+  return p[0][static_cast<size_t>(e[0])] * p[1][static_cast<size_t>(e[1])] * p[2][static_cast<size_t>(e[2])];
+}
+
+Basis make_basis(const ElementRow& row) {
+  Basis basis;
+  for (const char* digit = row.nodes; *digit != '\0'; digit += *digit == ' ') {
+    Eigen::Vector3d node;
+    for (int axis = 0; axis < 3; ++axis) node(axis) = (*digit++ - '0') / 2.0;
+    basis.nodes.push_back(node);
+  }
+  for (int i = 0; i < 27; ++i) {
+    const Exponents e{i % 3, i / 3 % 3, i / 9};
+    if (spans(row, e)) basis.exponents.push_back(e);
+  }
+  const auto n = static_cast<Eigen::Index>(basis.nodes.size());
+  Eigen::MatrixXd at_nodes(n, static_cast<Eigen::Index>(basis.exponents.size()));
+  for (Eigen::Index a = 0; a < n; ++a) {
+    const Powers powers = powers_of(basis.nodes[static_cast<size_t>(a)]);
+    for (Eigen::Index m = 0; m < at_nodes.cols(); ++m) {
+      at_nodes(a, m) = monomial(basis.exponents[static_cast<size_t>(m)], powers);
+    }
+  }
+  basis.coefficients = at_nodes.fullPivLu().inverse().array().round();
+  return basis;
+}
+
+const Basis& basis_of(Element element) {
+  static const std::vector<Basis> bases = [] {
+    std::vector<Basis> made;
+    for (const ElementRow& row : kElements) made.push_back(make_basis(row));
+    return made;
+  }();
+  return bases[static_cast<size_t>(element)];
+}
 
 std::string lower_case(std::string_view text) {
   std::string lower(text);
@@ -34,152 +130,66 @@ std::string lower_case(std::string_view text) {
   return lower;
 }
 
-size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<size_t> previous(b.size() + 1), current(b.size() + 1);
-  std::iota(previous.begin(), previous.end(), size_t{0});
-  for (size_t i = 0; i < a.size(); ++i) {
-    current[0] = i + 1;
-    for (size_t j = 0; j < b.size(); ++j) {
-      current[j + 1] = std::min({previous[j + 1] + 1, current[j] + 1, previous[j] + (a[i] == b[j] ? 0 : 1)});
-    }
-    std::swap(previous, current);
-  }
-  return previous[b.size()];
-}
-
-// Corner pairs of the mid-edge nodes 4 to 9 of a Tet10, in VTK's order.
-constexpr std::array<std::array<int, 2>, 6> kTet10Edges{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
-
-// Corners of the unit cube in VTK's order.
-constexpr std::array<std::array<int, 3>, 8> kHexCorners{
-    {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}};
-
-// Barycentric coordinates of a point of the unit simplex; their gradients are constant.
-Eigen::VectorXd barycentric(int dimension, const Eigen::Vector3d& point) {
-  Eigen::VectorXd lambda(dimension + 1);
-  lambda.tail(dimension) = point.head(dimension);
-  lambda(0) = 1 - lambda.tail(dimension).sum();
-  return lambda;
-}
-
-Eigen::MatrixXd barycentric_gradients(int dimension) {
-  Eigen::MatrixXd gradients(dimension + 1, dimension);
-  gradients.row(0).setConstant(-1);
-  gradients.bottomRows(dimension).setIdentity();
-  return gradients;
-}
-
 }  // namespace
 
-int nodes_of(Element element) { return row_of(element).nodes; }
+const std::vector<Element>& all_elements() {
+  static const std::vector<Element> all = [] {
+    std::vector<Element> elements;
+    for (const ElementRow& row : kElements) elements.push_back(row.element);
+    return elements;
+  }();
+  return all;
+}
+
+int nodes_of(Element element) {
+  // Three digits and a space for each node.
+  return static_cast<int>(std::string_view(row_of(element).nodes).size() + 1) / 4;
+}
 int dimension_of(Element element) { return row_of(element).dimension; }
+int degree_of(Element element) { return row_of(element).degree; }
+ReferenceShape shape_of(Element element) { return row_of(element).shape; }
 std::string name_of(Element element) { return row_of(element).name; }
 int vtk_cell_type(Element element) { return row_of(element).vtk_cell_type; }
+const std::vector<Eigen::Vector3d>& reference_nodes(Element element) { return basis_of(element).nodes; }
 
 Element element_named(std::string_view name) {
   const std::string wanted = lower_case(name);
-  const ElementRow* nearest = nullptr;
-  size_t nearest_distance = 3;
-  std::string known;
+  std::vector<std::string> known, lower;
   for (const ElementRow& row : kElements) {
-    const std::string candidate = lower_case(row.name);
-    if (candidate == wanted) return row.element;
-    const size_t distance = edit_distance(candidate, wanted);
-    if (distance < nearest_distance) {
-      nearest_distance = distance;
-      nearest = &row;
-    }
-    known += (known.empty() ? "" : ", ") + std::string(row.name);
+    known.emplace_back(row.name);
+    lower.push_back(lower_case(row.name));
+    if (lower.back() == wanted) return row.element;
   }
-  const std::string remedy =
-      nearest ? "; did you mean '" + std::string(nearest->name) + "'?" : "; known elements are " + known;
-  throw InputError("unknown element '" + std::string(name) + "'" + remedy);
-}
-
-QuadratureRule default_quadrature(Element element) {
-  QuadratureRule rule;
-  switch (element) {
-    case Element::point:
-      return {{Eigen::Vector3d::Zero()}, {1.0}, 0};
-    case Element::edge2:
-      return {{Eigen::Vector3d(0.5, 0, 0)}, {1.0}, 1};
-    case Element::tri3:
-      return {{Eigen::Vector3d(1.0 / 3, 1.0 / 3, 0)}, {0.5}, 1};
-    case Element::tet4:
-      return {{Eigen::Vector3d::Constant(0.25)}, {1.0 / 6}, 1};
-    case Element::tet10: {
-      const double a = (5 - std::sqrt(5.0)) / 20;
-      rule.points.assign(4, Eigen::Vector3d::Constant(a));
-      for (int i = 0; i < 3; ++i) rule.points[static_cast<size_t>(i) + 1](i) = 1 - 3 * a;
-      rule.weights.assign(4, 1.0 / 24);
-      rule.exactness = 2;
-      return rule;
-    }
-    case Element::hex8: {
-      const double offset = 0.5 / std::sqrt(3.0);
-      for (const auto& corner : kHexCorners) {
-        rule.points.push_back(Eigen::Vector3d(corner[0] - 0.5, corner[1] - 0.5, corner[2] - 0.5) * (2 * offset) +
-                              Eigen::Vector3d::Constant(0.5));
-      }
-      rule.weights.assign(8, 0.125);
-      rule.exactness = 3;
-      return rule;
-    }
+  const std::string nearest = nearest_of(wanted, lower);
+  if (nearest.empty()) {
+    throw InputError(fmt::format("unknown element '{}'; known elements are {}", name, fmt::join(known, ", ")));
   }
-  return rule;
+  const auto place = std::find(lower.begin(), lower.end(), nearest) - lower.begin();
+  throw InputError(fmt::format("unknown element '{}'; did you mean '{}'?", name, known[static_cast<size_t>(place)]));
 }
 
 Eigen::VectorXd shape_values(Element element, const Eigen::Vector3d& point) {
-  if (element == Element::hex8) {
-    Eigen::VectorXd values(8);
-    for (int node = 0; node < 8; ++node) {
-      double product = 1;
-      for (size_t axis = 0; axis < 3; ++axis) {
-        const double t = point(static_cast<int>(axis));
-        product *= kHexCorners[static_cast<size_t>(node)][axis] ? t : 1 - t;
-      }
-      values(node) = product;
-    }
-    return values;
+  const Basis& basis = basis_of(element);
+  const Powers powers = powers_of(point);
+  Eigen::VectorXd monomials(basis.coefficients.rows());
+  for (Eigen::Index m = 0; m < monomials.size(); ++m) {
+    monomials(m) = monomial(basis.exponents[static_cast<size_t>(m)], powers);
   }
-  const Eigen::VectorXd lambda = barycentric(dimension_of(element), point);
-  if (element != Element::tet10) return lambda;
-  Eigen::VectorXd values(10);
-  for (int i = 0; i < 4; ++i) values(i) = lambda(i) * (2 * lambda(i) - 1);
-  for (int e = 0; e < 6; ++e) {
-    const auto& edge = kTet10Edges[static_cast<size_t>(e)];
-    values(4 + e) = 4 * lambda(edge[0]) * lambda(edge[1]);
-  }
-  return values;
+  return basis.coefficients.transpose() * monomials;
 }
 
 Eigen::MatrixXd shape_gradients(Element element, const Eigen::Vector3d& point) {
-  if (element == Element::hex8) {
-    Eigen::MatrixXd gradients(8, 3);
-    for (int node = 0; node < 8; ++node) {
-      const auto& corner = kHexCorners[static_cast<size_t>(node)];
-      for (size_t derived = 0; derived < 3; ++derived) {
-        double product = 1;
-        for (size_t axis = 0; axis < 3; ++axis) {
-          const double t = point(static_cast<int>(axis));
-          product *= axis == derived ? (corner[axis] ? 1 : -1) : (corner[axis] ? t : 1 - t);
-        }
-        gradients(node, static_cast<int>(derived)) = product;
-      }
+  const Basis& basis = basis_of(element);
+  const Powers powers = powers_of(point);
+  Eigen::MatrixXd monomials(basis.coefficients.rows(), dimension_of(element));
+  for (Eigen::Index m = 0; m < monomials.rows(); ++m) {
+    for (Eigen::Index axis = 0; axis < monomials.cols(); ++axis) {
+      Exponents e = basis.exponents[static_cast<size_t>(m)];
+      const int power = e[static_cast<size_t>(axis)]--;
+      monomials(m, axis) = power == 0 ? 0 : power * monomial(e, powers);
     }
-    return gradients;
   }
-  const int dimension = dimension_of(element);
-  const Eigen::MatrixXd lambda_gradients = barycentric_gradients(dimension);
-  if (element != Element::tet10) return lambda_gradients;
-  const Eigen::VectorXd lambda = barycentric(dimension, point);
-  Eigen::MatrixXd gradients(10, 3);
-  for (int i = 0; i < 4; ++i) gradients.row(i) = (4 * lambda(i) - 1) * lambda_gradients.row(i);
-  for (int e = 0; e < 6; ++e) {
-    const auto& [a, b] = kTet10Edges[static_cast<size_t>(e)];
-    gradients.row(4 + e) = 4 * (lambda(a) * lambda_gradients.row(b) + lambda(b) * lambda_gradients.row(a));
-  }
-  return gradients;
+  return basis.coefficients.transpose() * monomials;
 }
 
 }  // namespace ergon

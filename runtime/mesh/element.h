@@ -1,34 +1,38 @@
 #pragma once
-// Elements: node counts, shape functions and quadrature, in one table.
+// Elements: reference shapes, nodes and shape functions. Everything is derived from one table of node coordinates.
 
 #include <Eigen/Core>
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace ergon {
 
-// Node order is that of VTK. The reference element is the unit simplex or, for Hex8, the unit cube [0, 1]^3.
-enum class Element { point, edge2, tri3, tet4, tet10, hex8 };
+// Node order is that of VTK: corners, then the nodes amid edges, faces and the cell. Prism6 is oriented as VTK's
+// parametric coordinates of a wedge are (as Gmsh's prism): from its last triangle the first is seen counter-clockwise.
+enum class Element { point, edge2, edge3, tri3, tri6, quad4, quad9, tet4, tet10, hex8, hex20, hex27, prism6 };
 
+// Products of unit simplices: [0, 1], the triangle x + y <= 1, the square [0, 1]^2, the tetrahedron x + y + z <= 1, the
+// cube [0, 1]^3, triangle times [0, 1].
+enum class ReferenceShape { point, edge, triangle, quadrilateral, tetrahedron, hexahedron, prism };
+
+const std::vector<Element>& all_elements();
 int nodes_of(Element element);
-int dimension_of(Element element);             // of the reference element: 0 to 3
+int dimension_of(Element element);  // of the reference element: 0 to 3
+int degree_of(Element element);     // 1 or 2: of the polynomials along an edge; 0 for a point
+ReferenceShape shape_of(Element element);
 std::string name_of(Element element);          // "Tet4"
 Element element_named(std::string_view name);  // any capitalisation; throws InputError naming the nearest
-int vtk_cell_type(Element element);
+int vtk_cell_type(Element element);            // vtkCellType.h
 
-struct QuadratureRule {
-  std::vector<Eigen::Vector3d> points;  // in the reference element
-  std::vector<double> weights;          // sum is the reference volume
-  int exactness = 0;                    // degree of polynomials integrated exactly
-};
+// Nodes in the reference element.
+const std::vector<Eigen::Vector3d>& reference_nodes(Element element);
 
-// The rule used for energies on this element unless another is asked for: the centroid (degree 1) for Edge2, Tri3 and
-// Tet4; for Tet10 the four points of Hammer and Stroud 1956, Numerical Integration Over Simplices, MTAC 10 (degree 2);
-// for Hex8 2x2x2 Gauss points (degree 3).
-QuadratureRule default_quadrature(Element element);
-
-// nodes x dimension: gradients of the shape functions at a reference point; and their values.
+// nodes x dimension: gradients of the shape functions at a reference point; and their values. The shape functions span
+// all polynomials of total degree k (simplices) or of degree k along each axis (squares and cubes), k = degree_of; a
+// prism's are products of both. Those of Hex20 span the polynomials of superlinear degree 2 (Arnold, Awanou 2011, The
+// serendipity family of finite elements, Foundations of Computational Mathematics 11).
 Eigen::MatrixXd shape_gradients(Element element, const Eigen::Vector3d& point);
 Eigen::VectorXd shape_values(Element element, const Eigen::Vector3d& point);
 

@@ -2,20 +2,42 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <climits>
 #include <cmath>
-#include <cstdint>
-#include <unordered_map>
+#include <map>
 
 #include "runtime/error.h"
 
 namespace ergon {
 namespace {
 
-void check_box(const Eigen::Vector3d& size, const std::array<int, 3>& cells) {
+// An element in a brick: the corners at the reference element's origin and at the ends of its axes. Corner c is
+// displaced by bit 0 of c along x, bit 1 along y, bit 2 along z.
+using BrickPart = std::array<int, 4>;
+
+std::vector<BrickPart> parts_of(Element element) {
+  switch (shape_of(element)) {
+    case ReferenceShape::point:
+      break;
+    case ReferenceShape::edge:
+    case ReferenceShape::quadrilateral:
+    case ReferenceShape::hexahedron:
+      return {{0, 1, 2, 4}};
+    case ReferenceShape::triangle:
+    case ReferenceShape::prism:
+      return {{0, 1, 3, 4}, {0, 3, 2, 4}};
+    case ReferenceShape::tetrahedron:
+      // Each follows one order of the axes from corner 0 to corner 7; odd orders are listed mirrored.
+      return {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}};
+  }
+  throw InputError(fmt::format("box: a box is not made of {} elements", name_of(element)));
+}
+
+void check_box(int dimension, const Eigen::Vector3d& size, const std::array<int, 3>& cells, size_t nodes_per_brick) {
   const char axes[] = "xyz";
   double bricks = 1;
-  for (int axis = 0; axis < 3; ++axis) {
+  for (int axis = 0; axis < dimension; ++axis) {
     const int count = cells[static_cast<size_t>(axis)];
     if (!(size(axis) > 0) || !std::isfinite(size(axis))) {
       throw InputError(
@@ -26,102 +48,132 @@ void check_box(const Eigen::Vector3d& size, const std::array<int, 3>& cells) {
     }
     bricks *= count;
   }
-  // Ten nodes for each of six tetrahedra must still be counted by an int.
-  if (bricks * 60 > INT_MAX) {
+  const size_t most = INT_MAX / nodes_per_brick;
+  if (bricks > static_cast<double>(most)) {
     throw InputError(fmt::format("box: {} x {} x {} cells are too many; at most {} bricks can be numbered", cells[0],
-                                 cells[1], cells[2], INT_MAX / 60));
+                                 cells[1], cells[2], most));
   }
 }
 
-Mesh box_vertices(const Eigen::Vector3d& size, const std::array<int, 3>& cells) {
-  check_box(size, cells);
-  Mesh mesh;
-  mesh.source = "box";
-  mesh.X.resize(3, static_cast<Eigen::Index>(cells[0] + 1) * (cells[1] + 1) * (cells[2] + 1));
-  Eigen::Index vertex = 0;
-  for (int k = 0; k <= cells[2]; ++k) {
-    for (int j = 0; j <= cells[1]; ++j) {
-      for (int i = 0; i <= cells[0]; ++i) {
-        mesh.X.col(vertex++) << size.x() * i / cells[0], size.y() * j / cells[1], size.z() * k / cells[2];
-      }
+// Corners and middles of all bricks, x fastest; those that nodes lie on are numbered in this order.
+class BoxLattice {
+ public:
+  BoxLattice(int dimension, const std::array<int, 3>& cells) {
+    for (size_t axis = 0; axis < 3; ++axis) {
+      cells_[axis] = static_cast<int>(axis) < dimension ? cells[axis] : 0;
+      points_[axis] = 2 * static_cast<size_t>(cells_[axis]) + 1;
     }
+    number_.assign(points_[0] * points_[1] * points_[2], -1);
   }
-  return mesh;
-}
 
-// Calls visit(corners) for each brick; corner c is displaced by bit 0 of c along x, bit 1 along y, bit 2 along z.
-template <class Visit>
-void for_each_brick(const std::array<int, 3>& cells, Visit visit) {
-  const int row = cells[0] + 1;
-  const int layer = row * (cells[1] + 1);
-  for (int k = 0; k < cells[2]; ++k) {
-    for (int j = 0; j < cells[1]; ++j) {
-      for (int i = 0; i < cells[0]; ++i) {
-        const int base = i + row * j + layer * k;
-        std::array<int, 8> corners;
-        for (int c = 0; c < 8; ++c) {
-          corners[static_cast<size_t>(c)] = base + (c & 1) + row * ((c >> 1) & 1) + layer * (c >> 2);
-        }
-        visit(corners);
+  int& number(const Eigen::Vector3i& place) {
+    const Eigen::Array<size_t, 3, 1> at = place.array().cast<size_t>();
+    return number_[at(0) + points_[0] * (at(1) + points_[1] * at(2))];
+  }
+
+  // Numbers all places at which number(place) is not negative, and gives their positions.
+  Eigen::Matrix3Xd count(const Eigen::Vector3d& size) {
+    int vertices = 0;
+    for (int& number : number_) number = number < 0 ? -1 : vertices++;
+    Eigen::Matrix3Xd X = Eigen::Matrix3Xd::Zero(3, vertices);
+    for (size_t i = 0; i < number_.size(); ++i) {
+      if (number_[i] < 0) continue;
+      const std::array<size_t, 3> at{i % points_[0], i / points_[0] % points_[1], i / points_[0] / points_[1]};
+      for (size_t axis = 0; axis < 3; ++axis) {
+        const auto row = static_cast<Eigen::Index>(axis);
+        if (cells_[axis] > 0) X(row, number_[i]) = size(row) * static_cast<double>(at[axis]) / (2 * cells_[axis]);
       }
     }
+    return X;
   }
-}
+
+ private:
+  std::array<int, 3> cells_;
+  std::array<size_t, 3> points_;
+  std::vector<int> number_;
+};
 
 }  // namespace
 
-Mesh box_tets(const Eigen::Vector3d& size, const std::array<int, 3>& cells) {
-  Mesh mesh = box_vertices(size, cells);
-  mesh.element = Element::tet4;
-  // Each tetrahedron follows one order of the axes from corner 0 to corner 7; odd orders are listed mirrored.
-  constexpr int kTets[6][4] = {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}};
-  for_each_brick(cells, [&](const std::array<int, 8>& corners) {
-    for (const auto& tet : kTets) {
-      for (const int corner : tet) mesh.cells.push_back(corners[static_cast<size_t>(corner)]);
+Mesh box_mesh(Element element, const Eigen::Vector3d& size, const std::array<int, 3>& cells) {
+  const int dimension = dimension_of(element);
+  const std::vector<BrickPart> parts = parts_of(element);
+  check_box(dimension, size, cells, parts.size() * static_cast<size_t>(nodes_of(element)));
+  // Places of the nodes of a brick on the lattice, from the brick's lowest corner.
+  std::vector<Eigen::Vector3i> nodes;
+  for (const BrickPart& part : parts) {
+    const auto corner = [](int c) { return Eigen::Vector3i(c & 1, c >> 1 & 1, c >> 2); };
+    Eigen::Matrix3i axes;
+    for (int axis = 0; axis < 3; ++axis) axes.col(axis) = corner(part[static_cast<size_t>(axis) + 1]) - corner(part[0]);
+    for (const Eigen::Vector3d& node : reference_nodes(element)) {
+      nodes.emplace_back(2 * corner(part[0]) + axes * (2 * node).cast<int>());
     }
-  });
-  return mesh;
-}
-
-Mesh box_hexes(const Eigen::Vector3d& size, const std::array<int, 3>& cells) {
-  Mesh mesh = box_vertices(size, cells);
-  mesh.element = Element::hex8;
-  constexpr size_t kVtkOrder[8] = {0, 1, 3, 2, 4, 5, 7, 6};
-  for_each_brick(cells, [&](const std::array<int, 8>& corners) {
-    for (const size_t corner : kVtkOrder) mesh.cells.push_back(corners[corner]);
-  });
-  return mesh;
-}
-
-Mesh to_tet10(const Mesh& mesh) {
-  if (mesh.element != Element::tet4) {
-    throw InputError(
-        fmt::format("{}: only Tet4 meshes become Tet10, this one is {}", mesh.source, name_of(mesh.element)));
   }
-  constexpr size_t kEdges[6][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
+  const auto for_each_node = [&](auto visit) {
+    for (int k = 0; k < (dimension > 2 ? cells[2] : 1); ++k) {
+      for (int j = 0; j < (dimension > 1 ? cells[1] : 1); ++j) {
+        for (int i = 0; i < cells[0]; ++i) {
+          for (const Eigen::Vector3i& node : nodes) visit(2 * Eigen::Vector3i(i, j, k) + node);
+        }
+      }
+    }
+  };
+  BoxLattice lattice(dimension, cells);
+  for_each_node([&](const Eigen::Vector3i& place) { lattice.number(place) = 0; });
+  Mesh mesh;
+  mesh.element = element;
+  mesh.source = "box";
+  mesh.X = lattice.count(size);
+  for_each_node([&](const Eigen::Vector3i& place) { mesh.cells.push_back(lattice.number(place)); });
+  return mesh;
+}
+
+Element linear_element(Element element) {
+  for (const Element linear : all_elements()) {
+    if (shape_of(linear) == shape_of(element)) return linear;  // the table lists it first
+  }
+  return element;
+}
+
+Mesh to_quadratic(const Mesh& mesh, Element element) {
+  const Element linear = linear_element(element);
+  if (mesh.element != linear || degree_of(element) != 2) {
+    throw InputError(fmt::format("{}: only {} meshes become {}, this one is {}", mesh.source, name_of(linear),
+                                 name_of(element), name_of(mesh.element)));
+  }
+  const auto corners = static_cast<size_t>(nodes_of(linear)), nodes = static_cast<size_t>(nodes_of(element));
+  // Shares of the corners in the nodes that are added.
+  std::vector<Eigen::VectorXd> shares;
+  for (size_t i = corners; i < nodes; ++i) shares.push_back(shape_values(linear, reference_nodes(element)[i]));
   Mesh quadratic;
-  quadratic.element = Element::tet10;
+  quadratic.element = element;
   quadratic.source = mesh.source;
-  quadratic.cells.reserve(static_cast<size_t>(mesh.cell_count()) * 10);
-  std::unordered_map<std::uint64_t, int> middle_of;
-  std::vector<std::array<int, 2>> edges;
-  for (size_t cell = 0; cell < mesh.cells.size(); cell += 4) {
-    const int* corners = &mesh.cells[cell];
-    quadratic.cells.insert(quadratic.cells.end(), corners, corners + 4);
-    for (const auto& edge : kEdges) {
-      const int low = std::min(corners[edge[0]], corners[edge[1]]);
-      const int high = std::max(corners[edge[0]], corners[edge[1]]);
-      const std::uint64_t key = (static_cast<std::uint64_t>(low) << 32) | static_cast<std::uint32_t>(high);
-      const auto [place, is_new] = middle_of.try_emplace(key, mesh.vertices() + static_cast<int>(edges.size()));
-      if (is_new) edges.push_back({low, high});
+  quadratic.cells.reserve(static_cast<size_t>(mesh.cell_count()) * nodes);
+  std::map<std::array<int, 8>, int> node_amid;  // by its corners in descending order, filled up with -1
+  std::vector<Eigen::Vector3d> added;
+  for (size_t cell = 0; cell < mesh.cells.size(); cell += corners) {
+    const int* corner = &mesh.cells[cell];
+    quadratic.cells.insert(quadratic.cells.end(), corner, corner + corners);
+    for (const Eigen::VectorXd& share : shares) {
+      std::array<int, 8> around;
+      around.fill(-1);
+      for (size_t c = 0; c < corners; ++c) {
+        if (share(static_cast<Eigen::Index>(c)) != 0) around[c] = corner[c];
+      }
+      std::sort(around.rbegin(), around.rend());
+      const auto [place, is_new] = node_amid.try_emplace(around, mesh.vertices() + static_cast<int>(added.size()));
+      if (is_new) {
+        added.push_back(Eigen::Vector3d::Zero());
+        for (size_t c = 0; c < corners; ++c)
+          added.back() += share(static_cast<Eigen::Index>(c)) * mesh.X.col(corner[c]);
+      }
       quadratic.cells.push_back(place->second);
     }
   }
-  quadratic.X.resize(3, mesh.vertices() + static_cast<Eigen::Index>(edges.size()));
+  quadratic.X.resize(3, mesh.vertices() + static_cast<Eigen::Index>(added.size()));
   quadratic.X.leftCols(mesh.vertices()) = mesh.X;
-  for (size_t e = 0; e < edges.size(); ++e) {
-    quadratic.X.col(mesh.vertices() + static_cast<Eigen::Index>(e)) =
-        (mesh.X.col(edges[e][0]) + mesh.X.col(edges[e][1])) / 2;
+  for (size_t i = 0; i < added.size(); ++i) {
+    quadratic.X.col(mesh.vertices() + static_cast<Eigen::Index>(i)) = added[i];
   }
   return quadratic;
 }

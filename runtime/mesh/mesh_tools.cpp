@@ -8,26 +8,46 @@
 #include <cmath>
 
 #include "runtime/error.h"
+#include "runtime/mesh/quadrature.h"
 
 namespace ergon {
 namespace {
 
-// Ratio of rest to reference volume at a point with the given shape gradients; signed for solids.
-double volume_factor(const Mesh& mesh, const int* nodes, const Eigen::MatrixXd& gradients) {
-  Eigen::Matrix3d jacobian = Eigen::Matrix3d::Zero();
-  for (Eigen::Index i = 0; i < gradients.rows(); ++i) {
-    jacobian.leftCols(gradients.cols()) += mesh.X.col(nodes[i]) * gradients.row(i);
-  }
-  switch (gradients.cols()) {
+using Jacobian = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3>;
+
+// Of the map from the reference element to the rest shape, at a point with the given shape gradients.
+Jacobian jacobian_at(const Mesh& mesh, const int* nodes, const Eigen::MatrixXd& gradients) {
+  Jacobian jacobian = Jacobian::Zero(3, gradients.cols());
+  for (Eigen::Index i = 0; i < gradients.rows(); ++i) jacobian += mesh.X.col(nodes[i]) * gradients.row(i);
+  return jacobian;
+}
+
+// Ratio of rest to reference volume; signed for solids.
+double volume_factor(const Jacobian& jacobian) {
+  switch (jacobian.cols()) {
     case 3:
       return jacobian.determinant();
     case 2:
-      return jacobian.col(0).cross(jacobian.col(1)).norm();
+      return Eigen::Vector3d(jacobian.col(0)).cross(Eigen::Vector3d(jacobian.col(1))).norm();
     case 1:
       return jacobian.col(0).norm();
     default:
       return 1;
   }
+}
+
+double volume_factor(const Mesh& mesh, const int* nodes, const Eigen::MatrixXd& gradients) {
+  return volume_factor(jacobian_at(mesh, nodes, gradients));
+}
+
+// The volume factor, negative where a membrane or line is turned back against its centre.
+double oriented_factor(const Mesh& mesh, const int* nodes, const Eigen::MatrixXd& gradients,
+                       const Eigen::MatrixXd& centre_gradients) {
+  const Jacobian here = jacobian_at(mesh, nodes, gradients);
+  const double factor = volume_factor(here);
+  if (here.cols() == 3 || here.cols() == 0) return factor;
+  const Jacobian centre = jacobian_at(mesh, nodes, centre_gradients);
+  return (centre.transpose() * here).determinant() < 0 ? -factor : factor;
 }
 
 std::vector<Eigen::MatrixXd> gradients_at(Element element, const std::vector<Eigen::Vector3d>& points) {
@@ -36,21 +56,22 @@ std::vector<Eigen::MatrixXd> gradients_at(Element element, const std::vector<Eig
   return gradients;
 }
 
-// Where orientation is checked: the quadrature points and, on elements that can bend, the nodes.
+bool is_linear_simplex(Element element) {
+  return degree_of(element) <= 1 && nodes_of(element) == dimension_of(element) + 1;
+}
+
+// Where orientation is checked; one point tells all of a linear simplex.
 std::vector<Eigen::Vector3d> checked_points(Element element) {
   std::vector<Eigen::Vector3d> points = default_quadrature(element).points;
-  if (element == Element::hex8 || element == Element::tet10) {
-    const double top = element == Element::hex8 ? 1.0 : 0.5;
-    for (int k = 0; k < 3; ++k) {
-      for (int j = 0; j < 3; ++j) {
-        for (int i = 0; i < 3; ++i) {
-          const bool node = element == Element::hex8 ? i != 1 && j != 1 && k != 1 : i + j + k <= 2;
-          if (node) points.push_back(Eigen::Vector3d(i, j, k) * (element == Element::hex8 ? top / 2 : top));
-        }
-      }
-    }
-  }
+  const std::vector<Eigen::Vector3d>& nodes = reference_nodes(element);
+  if (!is_linear_simplex(element)) points.insert(points.end(), nodes.begin(), nodes.end());
   return points;
+}
+
+Eigen::Vector3d reference_centre(Element element) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& node : reference_nodes(element)) sum += node;
+  return sum / nodes_of(element);
 }
 
 double extent_of(const Mesh& mesh, const int* nodes, int count) {
@@ -98,18 +119,19 @@ void check_mesh(const Mesh& mesh) {
   const int dimension = dimension_of(mesh.element);
   if (dimension == 0) return;
   const auto gradients = gradients_at(mesh.element, checked_points(mesh.element));
+  const Eigen::MatrixXd centre = shape_gradients(mesh.element, reference_centre(mesh.element));
   int bad = 0, first = -1;
   for (int c = 0; c < mesh.cell_count(); ++c) {
     const int* nodes = &mesh.cells[static_cast<size_t>(c) * static_cast<size_t>(count)];
     const double smallest = 1e-12 * std::pow(extent_of(mesh, nodes, count), dimension);
     const bool sound = std::all_of(gradients.begin(), gradients.end(),
-                                   [&](const auto& g) { return volume_factor(mesh, nodes, g) > smallest; });
+                                   [&](const auto& g) { return oriented_factor(mesh, nodes, g, centre) > smallest; });
     if (!sound && bad++ == 0) first = c;
   }
   if (bad == 0) return;
   const int* nodes = &mesh.cells[static_cast<size_t>(first) * static_cast<size_t>(count)];
   double lowest = std::numeric_limits<double>::infinity();
-  for (const auto& g : gradients) lowest = std::min(lowest, volume_factor(mesh, nodes, g));
+  for (const auto& g : gradients) lowest = std::min(lowest, oriented_factor(mesh, nodes, g, centre));
   const double flat = 1e-12 * std::pow(extent_of(mesh, nodes, count), dimension);
   const bool inverted = lowest < -flat;
   const double volume = rest_volumes(mesh)[static_cast<size_t>(first)];
@@ -125,7 +147,9 @@ void check_mesh(const Mesh& mesh) {
 }
 
 std::vector<double> rest_volumes(const Mesh& mesh) {
-  const QuadratureRule rule = default_quadrature(mesh.element);
+  // Along an axis the volume factor of a curved solid is of degree 3k - 1; on a simplex its total degree is 3k - 3.
+  const int exactness = is_linear_simplex(mesh.element) ? 1 : 3 * degree_of(mesh.element) - 1;
+  const QuadratureRule rule = quadrature(mesh.element, exactness);
   const auto gradients = gradients_at(mesh.element, rule.points);
   const size_t count = static_cast<size_t>(nodes_of(mesh.element));
   std::vector<double> volumes(mesh.cells.size() / count, 0.0);
@@ -141,29 +165,26 @@ Eigen::VectorXd lumped_masses(const Mesh& mesh, double density) {
   if (!(density > 0) || !std::isfinite(density)) {
     throw InputError(fmt::format("{}density is {}; it must be positive and finite", prefix_of(mesh), density));
   }
-  Eigen::VectorXd masses = Eigen::VectorXd::Zero(mesh.vertices());
-  const size_t count = static_cast<size_t>(nodes_of(mesh.element));
-  if (mesh.element == Element::hex8) {
-    // A node's shape function times the volume factor has degree 3 along each axis: the rule is exact for it.
-    const QuadratureRule rule = default_quadrature(mesh.element);
-    const auto gradients = gradients_at(mesh.element, rule.points);
-    for (size_t q = 0; q < gradients.size(); ++q) {
-      const Eigen::VectorXd shape = shape_values(mesh.element, rule.points[q]);
-      for (size_t c = 0; c < mesh.cells.size(); c += count) {
-        const double mass = density * rule.weights[q] * volume_factor(mesh, &mesh.cells[c], gradients[q]);
-        for (size_t i = 0; i < count; ++i) masses(mesh.cells[c + i]) += mass * shape(static_cast<Eigen::Index>(i));
-      }
-    }
-    return masses;
+  const bool quadratic = degree_of(mesh.element) == 2;
+  const QuadratureRule rule = quadrature(mesh.element, is_linear_simplex(mesh.element) ? 1 : quadratic ? 4 : 3);
+  const auto gradients = gradients_at(mesh.element, rule.points);
+  std::vector<Eigen::VectorXd> share;  // of the nodes, at each point
+  for (const Eigen::Vector3d& point : rule.points) {
+    share.push_back(shape_values(mesh.element, point));
+    if (quadratic) share.back() = share.back().cwiseAbs2();
   }
   const std::vector<double> volumes = rest_volumes(mesh);
+  const size_t count = static_cast<size_t>(nodes_of(mesh.element));
+  Eigen::VectorXd masses = Eigen::VectorXd::Zero(mesh.vertices());
+  Eigen::VectorXd shares(nodes_of(mesh.element));
   for (size_t c = 0; c < volumes.size(); ++c) {
-    for (size_t i = 0; i < count; ++i) {
-      const double share = mesh.element != Element::tet10 ? 1.0 / static_cast<double>(count)
-                           : i < 4                        ? 1.0 / 36
-                                                          : 4.0 / 27;
-      masses(mesh.cells[c * count + i]) += density * volumes[c] * share;
+    const int* nodes = &mesh.cells[c * count];
+    shares.setZero();
+    for (size_t q = 0; q < gradients.size(); ++q) {
+      shares += rule.weights[q] * volume_factor(mesh, nodes, gradients[q]) * share[q];
     }
+    shares *= density * volumes[c] / shares.sum();
+    for (size_t i = 0; i < count; ++i) masses(nodes[i]) += shares(static_cast<Eigen::Index>(i));
   }
   return masses;
 }

@@ -10,25 +10,26 @@
 namespace ergon {
 
 // The boundary of a solid mesh as triangles of its own vertices, seen counter-clockwise from outside: faces that belong
-// to one cell only, in the order of their cells. A Hex8 face gives two triangles (its diagonal starts at the face's
-// lowest vertex number), a Tet10 face four, through its mid-edge nodes. A Tri3 mesh gives its own triangles.
-// Throws InputError for points and edges.
+// to one cell only, in the order of their cells, cut through all their nodes (append_triangles). Of a mesh of triangles
+// or quadrilaterals, all its cells. Throws InputError for points and edges.
 std::vector<std::array<int, 3>> surface_triangles(const Mesh& mesh);
 
 // Throws InputError unless every coordinate is finite, every cell names existing and different vertices, and every cell
 // is positively oriented and not flat: its volume factor at quadrature points and nodes exceeds 1e-12 of the cube
-// (square, length) of its extent. The message names the first such cell, its volume and the number of them.
+// (square, length) of its extent. A membrane or line must not be turned back against its centre. The message names the
+// first such cell, its volume and the number of them.
 void check_mesh(const Mesh& mesh);
 
-// Volume of each cell with the element's default quadrature: m^3 for solids, m^2 for triangles, m for edges, 1 for
-// points. Solids are signed: negative when inverted.
+// Volume of each cell: m^3 for solids (exact, also where curved), m^2 for membranes, m for lines, 1 for points. Solids
+// are signed: negative when inverted.
 std::vector<double> rest_volumes(const Mesh& mesh);
 
-// Mass of each vertex, kg. `density` is in kg/m^3 for solids, kg/m^2 for triangles, kg/m for edges, kg for points.
-// Row sums of the consistent mass matrix; for Tet10, whose row sums are negative at the corners, the diagonal of the
-// straight-sided element scaled to keep its mass (Hinton, Rock, Zienkiewicz 1976, A note on mass lumping and related
-// processes in the finite element method, Earthquake Engineering and Structural Dynamics 4: corners 1/36, mid-edges
-// 4/27). Throws InputError unless the density is positive and finite.
+// Mass of each vertex, kg. `density` is in kg/m^3 for solids, kg/m^2 for membranes, kg/m for lines, kg for points.
+// Positive on every sound cell: row sums of the consistent mass matrix where shape functions are nowhere negative
+// (degree 1); its diagonal, scaled to keep the cell's mass, on elements of degree 2, whose row sums may be negative
+// (Hinton, Rock, Zienkiewicz 1976, A note on mass lumping and related processes in the finite element method,
+// Earthquake Engineering and Structural Dynamics 4; a straight Tet10: corners 1/36, mid-edges 4/27). Throws InputError
+// unless the density is positive and finite.
 Eigen::VectorXd lumped_masses(const Mesh& mesh, double density);
 
 // The same mesh with its cells along a Hilbert curve through their centres and its vertices in order of first use

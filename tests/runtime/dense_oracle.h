@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "runtime/block_matrix.h"
-#include "runtime/mesh/element.h"
 #include "runtime/mesh/mesh.h"
+#include "runtime/mesh/quadrature.h"
 #include "runtime/potential.h"
 #include "tests/runtime/jet_kernels.h"
 

@@ -53,7 +53,7 @@ TEST(mesh_build, box_of_hexahedra_has_the_same_vertices) {
 
 TEST(mesh_build, quadratic_tetrahedra_share_mid_edge_nodes) {
   const Mesh linear = box_tets(kSize, {1, 1, 1});
-  const Mesh mesh = to_tet10(linear);
+  const Mesh mesh = to_quadratic(linear, Element::tet10);
   // A brick of six tetrahedra has 12 outer edges, 6 face diagonals and the inner diagonal.
   EXPECT_EQ(mesh.vertices(), 8 + 19);
   EXPECT_EQ(mesh.cell_count(), 6);
@@ -71,7 +71,8 @@ TEST(mesh_build, quadratic_tetrahedra_share_mid_edge_nodes) {
 }
 
 TEST(mesh_build, surfaces_are_seen_counter_clockwise_from_outside) {
-  for (const Mesh& mesh : {box_tets(kSize, kCells), box_hexes(kSize, kCells), to_tet10(box_tets(kSize, kCells))}) {
+  for (const Mesh& mesh :
+       {box_tets(kSize, kCells), box_hexes(kSize, kCells), to_quadratic(box_tets(kSize, kCells), Element::tet10)}) {
     EXPECT_NEAR(volume_inside(mesh), 3.0, 1e-13) << name_of(mesh.element);
   }
 }
@@ -97,9 +98,9 @@ TEST(mesh_build, bad_numbers_are_named) {
   EXPECT_EQ(message([] {
               box_tets({1, 1, 1}, {1000, 1000, 1000});
             }),
-            "box: 1000 x 1000 x 1000 cells are too many; at most 35791394 bricks can be numbered");
+            "box: 1000 x 1000 x 1000 cells are too many; at most 89478485 bricks can be numbered");
   EXPECT_EQ(message([] {
-              to_tet10(box_hexes({1, 1, 1}, {1, 1, 1}));
+              to_quadratic(box_hexes({1, 1, 1}, {1, 1, 1}), Element::tet10);
             }),
             "box: only Tet4 meshes become Tet10, this one is Hex8");
 }

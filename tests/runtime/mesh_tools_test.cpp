@@ -100,7 +100,7 @@ TEST(mesh_tools, numbers_that_are_not_finite_and_names_that_do_not_exist_are_nam
 TEST(mesh_tools, masses_are_positive_and_add_up) {
   const Eigen::Vector3d size(2, 3, 0.5);
   for (const Mesh& mesh : {shaken(box_tets(size, {3, 3, 2})), shaken(box_hexes(size, {3, 3, 2})),
-                           to_tet10(shaken(box_tets(size, {3, 3, 2})))}) {
+                           to_quadratic(shaken(box_tets(size, {3, 3, 2})), Element::tet10)}) {
     const Eigen::VectorXd masses = lumped_masses(mesh, 1000);
     const auto volumes = rest_volumes(mesh);
     EXPECT_GT(masses.minCoeff(), 0) << name_of(mesh.element);
@@ -114,7 +114,7 @@ TEST(mesh_tools, quadratic_lumping_follows_the_consistent_diagonal) {
   const double corner = 6 * (4 * 24.0 / 5040 - 4 * 6.0 / 720 + 2.0 / 120);
   const double middle = 6 * 16 * 4.0 / 5040;
   const double scale = 4 * corner + 6 * middle;
-  const Eigen::VectorXd masses = lumped_masses(to_tet10(unit_tet()), 6);  // 1 kg
+  const Eigen::VectorXd masses = lumped_masses(to_quadratic(unit_tet(), Element::tet10), 6);  // 1 kg
   for (int i = 0; i < 10; ++i) EXPECT_NEAR(masses(i), (i < 4 ? corner : middle) / scale, 1e-15);
 }
 

@@ -38,7 +38,7 @@ std::string spring_message(const std::vector<int>& stencils, const std::map<std:
 }
 
 TEST(Potential, SaysWhatItHolds) {
-  const Mesh mesh = to_tet10(box_tets({1, 1, 1}, {1, 1, 1}));
+  const Mesh mesh = to_quadratic(box_tets({1, 1, 1}, {1, 1, 1}), Element::tet10);
   const Potential solid = Potential::on_mesh("block", kernel_of<NeoHookeanLaw>(1), mesh, 5, kStiff);
   EXPECT_EQ(solid.name(), "block");
   EXPECT_STREQ(solid.kernel().energy, "neo");

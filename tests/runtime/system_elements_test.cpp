@@ -38,7 +38,7 @@ Mesh irregular(Mesh mesh) {
 
 std::vector<Mesh> solid_meshes() {
   const Mesh tets = irregular(box_tets({1, 1.2, 0.9}, {2, 2, 2}));
-  return {tets, to_tet10(tets), irregular(box_hexes({1, 1.2, 0.9}, {3, 2, 2}))};
+  return {tets, to_quadratic(tets, Element::tet10), irregular(box_hexes({1, 1.2, 0.9}, {3, 2, 2}))};
 }
 
 TEST(SystemElements, SolidsEqualTheDenseSum) {
