@@ -48,6 +48,7 @@ Generated generate(const Energy& energy, const CompileOptions& options) {
     Emitted emitted = emit(out.module, code, options.lanes);
     out.source = std::move(emitted.source);
     out.counts = emitted.counts;
+    out.costs = std::move(emitted.costs);
   });
   return out;
 }

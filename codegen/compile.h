@@ -40,6 +40,7 @@ struct Generated {
   Module module;
   std::string source;
   OperationCounts counts;
+  std::vector<EntryCost> costs;
   CompileTimes times;
 };
 

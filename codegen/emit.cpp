@@ -98,14 +98,13 @@ std::string kernel_table(const Module& m, const OperationCounts& c, int lanes) {
   return out;
 }
 
-std::string header(const Module& m, const OperationCounts& c) {
+std::string header(const Module& m, const OperationCounts& c, const std::vector<EntryCost>& costs) {
   return fmt::format(
              "// {}{}: kernel made by Ergon from the energy below.\n"
-             "// Operations per lane: value {}, gradient {}, Hessian {} (of these {} divisions, {} square roots, {} "
-             "function calls).\n"
+             "// Cost per lane, as `ergon cost` tells it:\n{}"
              "// Kept: {} values per material, {} per element. q: {} components.\n//\n",
-             m.energy->name, m.case_name.empty() ? "" : ", case " + m.case_name, c.value, c.gradient, c.hessian,
-             c.divisions, c.roots, c.calls, c.uniforms, c.elements, m.q_size()) +
+             m.energy->name, m.case_name.empty() ? "" : ", case " + m.case_name, cost_table(costs, "//   "), c.uniforms,
+             c.elements, m.q_size()) +
          commented(m.energy->text) + "\n";
 }
 
@@ -155,7 +154,8 @@ Emitted emit(const Module& m, const Schedule& s, int lanes) {
        {&uniforms, &elements, &conditions, &value_text, &gradient_text, &hessian_text, &principal_text})
     count_calls(p, f->instructions, used);
 
-  out.source = header(m, c) + prelude(lanes, used) + kKernelAbiText + "\n";
+  out.costs = cost_of_entries(s);
+  out.source = header(m, c, out.costs) + prelude(lanes, used) + kKernelAbiText + "\n";
   out.source += fmt::format(
       "static void prepare_uniforms(const double* params, double* u) {{\n  (void)params, (void)u;\n{}}}\n\n",
       uniforms.body);
