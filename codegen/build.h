@@ -1,5 +1,5 @@
 #pragma once
-// Pass 8: an emitted source becomes a shared library, by the C++ compiler of the machine.
+// Pass 9: an emitted source becomes a shared library, by the C++ compiler of the machine.
 
 #include <filesystem>
 #include <stdexcept>
@@ -16,10 +16,6 @@ class BuildError : public std::runtime_error {
 
 // $ERGON_CXX, or "g++".
 std::string default_compiler();
-
-// What tells one installed compiler from another: a hash of its file's path, size and time of change; "" when there is
-// no such program. An upgrade changes it.
-std::string compiler_identity(const std::string& compiler);
 
 // The command line after the compiler's name. -O1: straight-line code of this kind compiles in less time and runs
 // faster than at -O2, whose scheduling lengthens live ranges.

@@ -20,6 +20,7 @@ struct CompileOptions {
   std::vector<std::filesystem::path>
       read_only_caches{};         // searched first, e.g. the catalogue compiled with the program
   std::filesystem::path cache{};  // "" means KernelCache::user_folder()
+  bool stable = true;             // false: what cancels near rest is left as written
   bool use_cached = true;         // false: build even if a sound kernel is there
   std::string compiler{};         // "" means default_compiler()
   // Called after each pass with its name and the graph as text, when set.
@@ -28,10 +29,10 @@ struct CompileOptions {
 
 // Seconds spent in each part.
 struct CompileTimes {
-  double lower = 0, frontier = 0, differentiate = 0, structure = 0, principal = 0, schedule = 0, emit = 0, compile = 0,
-         load = 0;
+  double lower = 0, rest = 0, frontier = 0, differentiate = 0, structure = 0, principal = 0, schedule = 0, emit = 0,
+         compile = 0, load = 0;
   double total() const {
-    return lower + frontier + differentiate + structure + principal + schedule + emit + compile + load;
+    return lower + rest + frontier + differentiate + structure + principal + schedule + emit + compile + load;
   }
 };
 
@@ -40,7 +41,6 @@ struct Generated {
   Module module;
   std::string source;
   OperationCounts counts;
-  std::vector<EntryCost> costs;
   CompileTimes times;
 };
 
@@ -56,20 +56,7 @@ struct CompiledKernel {
 // `energy` must outlive the result's module. Throws SourceError for what cannot be compiled.
 Generated generate(const Energy& energy, const CompileOptions& options);
 
-// A kernel that was generated and, where a cache holds it, loaded; else what building it takes.
-struct PreparedKernel {
-  CompiledKernel kernel;
-  std::string key, compiler, maker;
-  std::filesystem::path cache;
-  int lanes = 1;
-};
-
-// The two halves of compile(): all that is the program's own, and the C++ compiler (which may run in several threads at
-// once). finish() throws BuildError (codegen/build.h).
-PreparedKernel prepare(const Energy& energy, const CompileOptions& options);
-CompiledKernel finish(PreparedKernel prepared);
-
-// Also throws BuildError.
+// Also throws BuildError (codegen/build.h).
 CompiledKernel compile(const Energy& energy, const CompileOptions& options);
 
 }  // namespace ergon

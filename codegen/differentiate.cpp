@@ -22,6 +22,10 @@ NodeId partial(Graph& g, NodeId id, size_t k) {
       return g.power(g.sum(1, {{1, a}}), -1);
     case Call::expm1:
       return g.sum(1, {{1, id}});
+    case Call::log1pmx:
+      return g.product(-1, {{a}, {g.sum(1, {{1, a}}), -1}});
+    case Call::expm1mx:
+      return g.call(Call::expm1, {a});
     case Call::sin:
       return g.call(Call::cos, {a});
     case Call::cos:
@@ -126,15 +130,9 @@ class Tangents {
   std::vector<NodeId> tangent_;
 };
 
-}  // namespace
-
-void differentiate(Module& module) {
-  Graph& g = module.graph;
-  int n = module.q_size();
-  if (n > 64) throw std::logic_error("differentiate: more than 64 components of q");
-  module.gradient = reverse(g, module.value, n);
-
-  std::vector<NodeId> order = reachable(g, module.gradient);
+void derive(Graph& g, NodeId value, int n, std::vector<NodeId>& gradient, std::vector<NodeId>& hessian) {
+  gradient = reverse(g, value, n);
+  std::vector<NodeId> order = reachable(g, gradient);
   std::vector<std::uint64_t> depends(static_cast<size_t>(g.size()), 0);
   for (NodeId id : order) {
     const Node& node = g[id];
@@ -142,12 +140,21 @@ void differentiate(Module& module) {
     if (node.kind == Node::Kind::input && node.source == Source::q) d = std::uint64_t{1} << node.index;
     for (NodeId o : g.operands(id)) d |= depends[static_cast<size_t>(o)];
   }
-  module.hessian.assign(static_cast<size_t>(n * (n + 1) / 2), -1);
+  hessian.assign(static_cast<size_t>(n * (n + 1) / 2), -1);
   for (int j = 0; j < n; ++j) {
     Tangents tangents(g, order, depends, j);
     for (int i = j; i < n; ++i)
-      module.hessian[static_cast<size_t>(i * (i + 1) / 2 + j)] = tangents.of(module.gradient[static_cast<size_t>(i)]);
+      hessian[static_cast<size_t>(i * (i + 1) / 2 + j)] = tangents.of(gradient[static_cast<size_t>(i)]);
   }
+}
+
+}  // namespace
+
+void differentiate(Module& module) {
+  if (module.q_size() > 64) throw std::logic_error("differentiate: more than 64 components of q");
+  derive(module.graph, module.value, module.q_size(), module.gradient, module.hessian);
+  if (module.near < 0) return;
+  derive(module.graph, module.far.value, module.q_size(), module.far.gradient, module.far.hessian);
 }
 
 }  // namespace ergon

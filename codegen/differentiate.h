@@ -1,12 +1,13 @@
 #pragma once
-// Pass 3: first and second derivatives with respect to q, on the graph.
+// Pass 4: first and second derivatives with respect to q, on the graph.
 
 #include "codegen/module.h"
 
 namespace ergon {
 
 // Establishes module.gradient (reverse accumulation: every node's adjoint is formed once) and module.hessian (tangents
-// of the gradient, lower triangle; entries (i, j) and what they share are one node wherever they are equal).
+// of the gradient, lower triangle; entries (i, j) and what they share are one node wherever they are equal); the same
+// of module.far where there is one.
 void differentiate(Module& module);
 
 }  // namespace ergon

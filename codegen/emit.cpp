@@ -54,11 +54,51 @@ void count_calls(const Program& p, const std::vector<int>& code, std::set<std::s
   }
 }
 
-std::string entry(const char* name, const char* out_parameters, const char* out_vectors, const std::string& body) {
+std::string entry(const std::string& name, const char* out_parameters, const char* out_vectors,
+                  const std::string& body) {
   return fmt::format(
       "static void {}(const double* q_, const double* e_, const double* u, {}) {{\n"
       "  const V* q = (const V*)q_;\n  const V* e = (const V*)e_;\n{}  (void)q, (void)e, (void)u;\n{}}}\n\n",
       name, out_parameters, out_vectors, body);
+}
+
+// One of the three evaluations: its name, what it writes.
+struct Evaluation {
+  const char* name;
+  const char* parameters;
+  const char* vectors;
+  const char* arguments;
+};
+constexpr Evaluation kEvaluations[] = {
+    {"value", "double* value_, double* require_", "  V* value = (V*)value_;\n  V* require = (V*)require_;\n",
+     "value_, require_"},
+    {"gradient", "double* value_, double* gradient_", "  V* value = (V*)value_;\n  V* gradient = (V*)gradient_;\n",
+     "value_, gradient_"},
+    {"hessian", "double* value_, double* gradient_, double* hessian_",
+     "  V* value = (V*)value_;\n  V* gradient = (V*)gradient_;\n  V* hessian = (V*)hessian_;\n",
+     "value_, gradient_, hessian_"}};
+
+// Runs the form that all lanes ask for; where they differ, both, and picks by lane.
+std::string dispatch(const Evaluation& e, const FunctionText& near, int q_size) {
+  const int packed = q_size * (q_size + 1) / 2, sizes[] = {1, q_size, packed};
+  const std::string name = e.name;
+  std::string arrays, far_arguments, picks;
+  auto output = [&](const std::string& array, int size) {
+    arrays += fmt::format("  V other_{}[{}];\n", array, size);
+    far_arguments += fmt::format(", (double*)other_{}", array);
+    picks += fmt::format("  for (int i = 0; i < {0}; ++i) {1}[i] = near > 0.0 ? {1}[i] : other_{1}[i];\n", size, array);
+  };
+  output("value", sizes[0]);
+  if (name == "value") output("require", 1);
+  if (name != "value") output("gradient", sizes[1]);
+  if (name == "hessian") output("hessian", sizes[2]);
+  return near.body + fmt::format(
+                         "  const int lanes = lanes_above(near);\n"
+                         "  if (lanes != 0) {0}_near(q_, e_, u, {1});\n"
+                         "  if (lanes == 0) {0}_far(q_, e_, u, {1});\n"
+                         "  if (lanes == 0 || lanes == all_lanes) return;\n"
+                         "{2}  {0}_far(q_, e_, u{3});\n{4}",
+                         name, e.arguments, arrays, far_arguments, picks);
 }
 
 std::string input_table(const Module& m) {
@@ -98,13 +138,19 @@ std::string kernel_table(const Module& m, const OperationCounts& c, int lanes) {
   return out;
 }
 
-std::string header(const Module& m, const OperationCounts& c, const std::vector<EntryCost>& costs) {
+std::string header(const Module& m, const OperationCounts (&counts)[2]) {
+  const OperationCounts &c = counts[0], &far = counts[1];
+  std::string two_forms;
+  if (m.near >= 0)
+    two_forms = fmt::format("// These are near rest (margin `near` above 0); elsewhere {}, {}, {}.\n", far.value,
+                            far.gradient, far.hessian);
   return fmt::format(
              "// {}{}: kernel made by Ergon from the energy below.\n"
-             "// Cost per lane, as `ergon cost` tells it:\n{}"
+             "// Operations per lane: value {}, gradient {}, Hessian {} (of these {} divisions, {} square roots, {} "
+             "function calls).\n{}"
              "// Kept: {} values per material, {} per element. q: {} components.\n//\n",
-             m.energy->name, m.case_name.empty() ? "" : ", case " + m.case_name, cost_table(costs, "//   "), c.uniforms,
-             c.elements, m.q_size()) +
+             m.energy->name, m.case_name.empty() ? "" : ", case " + m.case_name, c.value, c.gradient, c.hessian,
+             c.divisions, c.roots, c.calls, two_forms, c.uniforms, c.elements, m.q_size()) +
          commented(m.energy->text) + "\n";
 }
 
@@ -113,49 +159,57 @@ std::string header(const Module& m, const OperationCounts& c, const std::vector<
 Emitted emit(const Module& m, const Schedule& s, int lanes) {
   const Program& p = s.program;
   Slots slots = assign_slots(s);
-  std::vector<Output> value = {{"value[0]", s.value}};
-  std::vector<Output> gradient = join(value, outputs_to("gradient", s.gradient));
-  std::vector<Output> hessian = join(gradient, outputs_to("hessian", s.hessian));
-  std::vector<Output> require = outputs_to("require", s.require);
-
-  // The value entry also gives the smallest margin.
   auto text = [&](const std::vector<Output>& outputs) {
     return function_text(p, slots, outputs, false, true, true, "raw");
   };
+  // The value entry also gives the smallest margin.
+  std::vector<Output> margins;
+  std::string smallest = "  require[0] = __builtin_inf() - V{};\n";
+  for (size_t i = 0; i < s.require.size(); ++i) {
+    margins.push_back({fmt::format("const V margin{}", i), s.require[i]});
+    smallest += fmt::format("  require[0] = v_min(margin{}, require[0]);\n", i);
+  }
+  // By form, near before far, and evaluation.
+  const bool two_forms = m.near >= 0;
+  std::vector<FunctionText> texts;
+  OperationCounts counts[2];
+  for (int form = 0; form < (two_forms ? 2 : 1); ++form) {
+    std::vector<Output> value = {{"value[0]", form == 0 ? s.value : s.far_value}};
+    std::vector<Output> gradient = join(value, outputs_to("gradient", form == 0 ? s.gradient : s.far_gradient));
+    std::vector<Output> hessian = join(gradient, outputs_to("hessian", form == 0 ? s.hessian : s.far_hessian));
+    OperationCounts& c = counts[form];
+    c.value = static_cast<int>(text(value).instructions.size());
+    texts.push_back(text(join(value, margins)));
+    texts.back().body += smallest;
+    texts.push_back(text(gradient));
+    c.gradient = static_cast<int>(texts.back().instructions.size());
+    texts.push_back(text(hessian));
+    c.hessian = static_cast<int>(texts.back().instructions.size());
+    for (int i : texts.back().instructions) {
+      c.divisions += p[i].op == Opcode::divide;
+      c.roots += p[i].op == Opcode::sqrt;
+      c.calls += p[i].op == Opcode::call && p[i].call < Call::abs;
+    }
+    c.uniforms = static_cast<int>(slots.uniforms.size());
+    c.elements = static_cast<int>(slots.elements.size());
+  }
   FunctionText uniforms = function_text(p, slots, outputs_to("u", slots.uniforms), true, false, false, "raw");
   FunctionText elements = function_text(p, slots, outputs_to("e", slots.elements), false, true, false, "raw");
-  FunctionText conditions = text(join(outputs_to("active", s.active), require));
-  std::vector<Output> margins = outputs_to("V margin", {});
-  for (size_t i = 0; i < s.require.size(); ++i) margins.push_back({fmt::format("const V margin{}", i), s.require[i]});
-  FunctionText value_text = text(join(value, margins));
-  FunctionText gradient_text = text(gradient);
-  FunctionText hessian_text = text(hessian);
+  FunctionText conditions = text(join(outputs_to("active", s.active), outputs_to("require", s.require)));
   FunctionText principal_text = text(outputs_to("blocks", s.principal));
-  std::string smallest = "  require[0] = __builtin_inf() - V{};\n";
-  for (size_t i = 0; i < s.require.size(); ++i)
-    smallest += fmt::format("  require[0] = v_min(margin{}, require[0]);\n", i);
+  FunctionText near = two_forms ? text({{"const V near", s.near}}) : FunctionText{};
 
-  Emitted out;
-  OperationCounts& c = out.counts;
-  c.value = static_cast<int>(text(value).instructions.size());
-  c.gradient = static_cast<int>(gradient_text.instructions.size());
-  c.hessian = static_cast<int>(hessian_text.instructions.size());
-  c.principal = static_cast<int>(principal_text.instructions.size());
-  c.uniforms = static_cast<int>(slots.uniforms.size());
-  c.elements = static_cast<int>(slots.elements.size());
-  for (int i : hessian_text.instructions) {
-    c.divisions += p[i].op == Opcode::divide;
-    c.roots += p[i].op == Opcode::sqrt;
-    c.calls += p[i].op == Opcode::call && p[i].call < Call::abs;
-  }
   std::set<std::string> used;
   if (!s.require.empty()) used.insert("v_min");
-  for (const FunctionText* f :
-       {&uniforms, &elements, &conditions, &value_text, &gradient_text, &hessian_text, &principal_text})
-    count_calls(p, f->instructions, used);
+  if (two_forms) used.insert("lanes_above");
+  std::vector<const FunctionText*> all = {&uniforms, &elements, &conditions, &near, &principal_text};
+  for (const FunctionText& t : texts) all.push_back(&t);
+  for (const FunctionText* f : all) count_calls(p, f->instructions, used);
 
-  out.costs = cost_of_entries(s);
-  out.source = header(m, c, out.costs) + prelude(lanes, used) + kKernelAbiText + "\n";
+  Emitted out;
+  counts[0].principal = static_cast<int>(principal_text.instructions.size());
+  out.counts = counts[0];
+  out.source = header(m, counts) + prelude(lanes, used) + kKernelAbiText + "\n";
   out.source += fmt::format(
       "static void prepare_uniforms(const double* params, double* u) {{\n  (void)params, (void)u;\n{}}}\n\n",
       uniforms.body);
@@ -166,20 +220,21 @@ Emitted emit(const Module& m, const Schedule& s, int lanes) {
   out.source += entry("conditions", "double* active_, double* require_",
                       "  V* active = (V*)active_;\n  V* require = (V*)require_;\n  (void)active, (void)require;\n",
                       conditions.body);
-  out.source += entry("value_entry", "double* value_, double* require_",
-                      "  V* value = (V*)value_;\n  V* require = (V*)require_;\n", value_text.body + smallest);
-  out.source += entry("gradient_entry", "double* value_, double* gradient_",
-                      "  V* value = (V*)value_;\n  V* gradient = (V*)gradient_;\n", gradient_text.body);
-  out.source += entry("hessian_entry", "double* value_, double* gradient_, double* hessian_",
-                      "  V* value = (V*)value_;\n  V* gradient = (V*)gradient_;\n  V* hessian = (V*)hessian_;\n",
-                      hessian_text.body);
+  for (size_t i = 0; i < 3; ++i) {
+    const Evaluation& e = kEvaluations[i];
+    const std::string name = e.name;
+    out.source += entry(name + (two_forms ? "_near" : "_entry"), e.parameters, e.vectors, texts[i].body);
+    if (!two_forms) continue;
+    out.source += entry(name + "_far", e.parameters, e.vectors, texts[3 + i].body);
+    out.source += entry(name + "_entry", e.parameters, e.vectors, dispatch(e, near, m.q_size()));
+  }
   if (!m.principal.empty())
     out.source += fmt::format(
         "static void principal_entry(const double* s_, const double* e_, const double* u, double* blocks_) {{\n"
         "  const V* s = (const V*)s_;\n  const V* e = (const V*)e_;\n  V* blocks = (V*)blocks_;\n"
         "  (void)s, (void)e, (void)u;\n{}}}\n\n",
         principal_text.body);
-  out.source += kernel_table(m, c, lanes);
+  out.source += kernel_table(m, counts[0], lanes);
   return out;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Pass 2: the affine quantities that feed everything nonlinear.
+// Pass 3: the affine quantities that feed everything nonlinear.
 //
 // Establishes q: the fewest 3-vectors q = (weights (x) I3) x, with constant weights over the stencil's points, through
 // which the energy depends on its points (edge vectors of a hinge: 3 instead of 4; one difference for a spring). After

@@ -41,9 +41,30 @@ void reduce(Factor& f) {
 
 }  // namespace
 
+namespace {
+
+// Series where the closed form would lose digits; the sums of a few dozen terms are exact to rounding.
+double log1pmx(double x) {
+  if (!(std::abs(x) < 0.5)) return std::log1p(x) - x;
+  const double z = x / (2 + x), z2 = z * z;  // log(1 + x) = 2 atanh(z)
+  double sum = 0;
+  for (int k = 20; k >= 0; --k) sum = sum * z2 + 1.0 / (2 * k + 3);
+  return 2 * z * z2 * sum - x * z;
+}
+
+double expm1mx(double x) {
+  if (!(std::abs(x) < 0.5)) return std::expm1(x) - x;
+  double sum = 1;
+  for (int k = 20; k >= 3; --k) sum = 1 + sum * x / k;
+  return 0.5 * x * x * sum;
+}
+
+}  // namespace
+
 const char* name_of(Call call) {
-  static const char* const names[] = {"log",  "exp",   "log1p", "expm1", "sin", "cos", "tan",    "asin", "acos",
-                                      "atan", "atan2", "pow",   "abs",   "min", "max", "select", "keep"};
+  static const char* const names[] = {"log", "exp", "log1p", "expm1",  "log1pmx", "expm1mx", "sin",
+                                      "cos", "tan", "asin",  "acos",   "atan",    "atan2",   "pow",
+                                      "abs", "min", "max",   "select", "keep"};
   return names[static_cast<int>(call)];
 }
 
@@ -57,6 +78,10 @@ double evaluate(Call call, const std::vector<double>& a) {
       return std::log1p(a[0]);
     case Call::expm1:
       return std::expm1(a[0]);
+    case Call::log1pmx:
+      return log1pmx(a[0]);
+    case Call::expm1mx:
+      return expm1mx(a[0]);
     case Call::sin:
       return std::sin(a[0]);
     case Call::cos:

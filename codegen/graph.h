@@ -38,7 +38,28 @@ struct Factor {
 // Functions of a graph. select(c, a, b) is a where c > 0, else b. keep(a) is a, as a value that nothing is simplified
 // across: the author's own intermediate results that do not depend on the degrees of freedom, which are computed once
 // and read.
-enum class Call { log, exp, log1p, expm1, sin, cos, tan, asin, acos, atan, atan2, pow, abs, min, max, select, keep };
+// log1pmx(x) is log(1 + x) - x, expm1mx(x) is exp(x) - 1 - x, both without cancellation near 0.
+enum class Call {
+  log,
+  exp,
+  log1p,
+  expm1,
+  log1pmx,
+  expm1mx,
+  sin,
+  cos,
+  tan,
+  asin,
+  acos,
+  atan,
+  atan2,
+  pow,
+  abs,
+  min,
+  max,
+  select,
+  keep
+};
 const char* name_of(Call call);
 // The function's value in double precision.
 double evaluate(Call call, const std::vector<double>& arguments);

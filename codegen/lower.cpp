@@ -1,119 +1,23 @@
 #include "codegen/lower.h"
 
-#include <cmath>
 #include <stdexcept>
 
+#include "codegen/graph_algebra.h"
 #include "codegen/rewrite.h"
 #include "symbolic/elaborate.h"
 
 namespace ergon {
-namespace {
-
-// The algebra in which an energy's text is a graph (see symbolic/elaborate.h).
-class GraphAlgebra {
- public:
-  using Scalar = NodeId;
-  explicit GraphAlgebra(Module& module) : module_(module), graph_(module.graph) {}
-
-  NodeId number(const std::string& decimal) { return graph_.constant(std::stod(decimal)); }
-  NodeId add(NodeId a, NodeId b) { return graph_.add(a, b); }
-  NodeId subtract(NodeId a, NodeId b) { return graph_.subtract(a, b); }
-  NodeId multiply(NodeId a, NodeId b) { return graph_.multiply(a, b); }
-  NodeId divide(NodeId a, NodeId b) { return graph_.divide(a, b); }
-  NodeId negate(NodeId a) { return graph_.scale(-1, a); }
-  NodeId power(NodeId a, long num, long den) { return graph_.power(a, static_cast<int>(num), static_cast<int>(den)); }
-  NodeId power(NodeId a, NodeId b) { return graph_.call(Call::pow, {a, b}); }
-
-  NodeId call(Function f, const std::vector<NodeId>& a) {
-    switch (f) {
-      case Function::sqrt:
-        return graph_.power(a[0], 1, 2);
-      case Function::log:
-        return graph_.call(Call::log, a);
-      case Function::exp:
-        return graph_.call(Call::exp, a);
-      case Function::log1p:
-        return graph_.call(Call::log1p, a);
-      case Function::expm1:
-        return graph_.call(Call::expm1, a);
-      case Function::sin:
-        return graph_.call(Call::sin, a);
-      case Function::cos:
-        return graph_.call(Call::cos, a);
-      case Function::tan:
-        return graph_.call(Call::tan, a);
-      case Function::asin:
-        return graph_.call(Call::asin, a);
-      case Function::acos:
-        return graph_.call(Call::acos, a);
-      case Function::atan:
-        return graph_.call(Call::atan, a);
-      case Function::atan2:
-        return graph_.call(Call::atan2, a);
-      case Function::abs:
-        return graph_.call(Call::abs, a);
-      case Function::min:
-        return graph_.call(Call::min, a);
-      case Function::max:
-        return graph_.call(Call::max, a);
-    }
-    throw std::logic_error("lower: unknown function");
-  }
-
-  NodeId input(const Symbol& symbol, int component) {
-    int index = module_.offsets[static_cast<size_t>(&symbol - module_.energy->symbols.data())] + component;
-    Source source = symbol.role == Role::param ? Source::param
-                    : symbol.role != Role::dof ? Source::raw
-                    : module_.points == 0      ? Source::q
-                                               : Source::point;
-    NodeId id = graph_.input(source, index);
-    graph_.set_name(id, component_name(symbol.name, symbol.shape, component));
-    return id;
-  }
-
-  // Lets of parameters and rest or lag data alone become values of their own.
-  NodeId named(const std::string& let, int component, int size, NodeId value) {
-    if (graph_[value].kind != Node::Kind::input && !graph_.is_constant(value) && !moves(value))
-      value = graph_.call(Call::keep, {value});
-    graph_.set_name(value, size == 1 ? let : let + "_" + std::to_string(component));
-    return value;
-  }
-
- private:
-  static std::string component_name(const std::string& name, Shape shape, int component) {
-    if (shape.scalar()) return name;
-    if (shape.cols == 1) return name + "_" + std::to_string(component);
-    return name + std::to_string(component % shape.rows) + std::to_string(component / shape.rows);
-  }
-
-  // Whether the node depends on a degree of freedom.
-  bool moves(NodeId id) {
-    while (moves_.size() < static_cast<size_t>(graph_.size())) {
-      NodeId next = static_cast<NodeId>(moves_.size());
-      const Node& n = graph_[next];
-      bool m = n.kind == Node::Kind::input && (n.source == Source::q || n.source == Source::point);
-      for (NodeId o : graph_.operands(next)) m = m || moves_[static_cast<size_t>(o)];
-      moves_.push_back(m);
-    }
-    return moves_[static_cast<size_t>(id)];
-  }
-
-  Module& module_;
-  Graph& graph_;
-  std::vector<char> moves_;
-};
-
-}  // namespace
 
 std::vector<NodeId> Module::roots() const {
   std::vector<NodeId> out;
-  if (value >= 0) out.push_back(value);
-  for (const auto* list : {&active, &require, &gradient, &hessian, &principal})
+  for (NodeId one : {value, near, far.value})
+    if (one >= 0) out.push_back(one);
+  for (const auto* list : {&active, &require, &gradient, &hessian, &principal, &far.gradient, &far.hessian})
     out.insert(out.end(), list->begin(), list->end());
   return out;
 }
 
-Module lower(const Energy& energy, const std::string& case_name) {
+Module empty_module(const Energy& energy, const std::string& case_name) {
   Module module;
   module.energy = &energy;
   module.case_name = case_name;
@@ -129,6 +33,11 @@ Module lower(const Energy& energy, const std::string& case_name) {
   }
   module.points = density ? 0 : components / 3;
   module.q_vectors = components / 3;
+  return module;
+}
+
+Module lower(const Energy& energy, const std::string& case_name) {
+  Module module = empty_module(energy, case_name);
 
   GraphAlgebra algebra(module);
   Elaborated<NodeId> parts = elaborate(energy, case_name, algebra);

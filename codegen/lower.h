@@ -7,6 +7,9 @@
 
 namespace ergon {
 
+// The layout of inputs alone, with an empty graph.
+Module empty_module(const Energy& energy, const std::string& case_name);
+
 Module lower(const Energy& energy, const std::string& case_name);
 
 // Splices unnamed sums that are used once into the sum that uses them.

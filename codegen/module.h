@@ -25,7 +25,8 @@ struct Module {
   int raw = 0;
   int points = 0;  // 0 for a density
 
-  // Set by frontier(): q = (weights (x) I3) x, weights [q_vectors][points]; for a density q is F and weights are empty.
+  // Set by frontier(): q = (weights (x) I3) x, weights [q_vectors][points]; for a density q is F, or F - I, and weights
+  // are empty.
   int q_vectors = 0;
   std::vector<double> weights;
   int q_size() const { return 3 * q_vectors; }
@@ -34,14 +35,20 @@ struct Module {
   std::vector<NodeId> gradient;
   std::vector<NodeId> hessian;
 
+  // Set by rest_form(): q is F - I. Where `near` is -1, value holds everywhere; otherwise value (and its derivatives)
+  // serve states where near > 0, and `far` all others.
+  bool displacement = false;
+  NodeId near = -1;
+  struct Far {
+    NodeId value = -1;
+    std::vector<NodeId> gradient, hessian;
+  } far;
+
   // Set by find_structure().
   bool constant_gradient = false;
   bool constant_hessian = false;
   bool zero_hessian = false;
   bool psd_hessian = false;
-
-  // Whether q of a density is its displacement gradient F - I instead of F.
-  bool displacement = false;
 
   // Set by find_principal(); empty when there is no closed form.
   std::vector<NodeId> principal;

@@ -21,6 +21,45 @@ std::string by_comparison(const std::string& type, const std::string& prefix, co
   return "";
 }
 
+// Bit l is set where lane l is above 0.
+std::string lanes_above(int lanes) {
+  if (lanes == 1) return "enum { all_lanes = 1 };\nstatic inline int lanes_above(V a) { return a > 0.0; }\n";
+  std::string builtin =
+      lanes == 8 ? "__builtin_ia32_cmppd512_mask(a, V{}, 14, -1, 4)" : "__builtin_ia32_movmskpd256((V)(a > 0.0))";
+  return fmt::format(
+      "enum {{ all_lanes = {} }};\nstatic inline int lanes_above(V a) {{\n"
+      "#if defined(__x86_64__) && !defined(__clang__)\n  return {};\n#else\n  int bits = 0;\n"
+      "  for (int i = 0; i < {}; ++i) bits |= (a[i] > 0.0) << i;\n  return bits;\n#endif\n}}\n",
+      (1 << lanes) - 1, lanes == 8 ? "(unsigned char)" + builtin : builtin, lanes);
+}
+
+// log(1 + x) - x and exp(x) - 1 - x: series where x is small; where it is not, the function less x, in which at most
+// two bits cancel. Lanes share a branch, as arguments are small as a rule. With z = x/(2 + x),
+// log(1 + x) = 2 atanh(z) = 2 z + 2/3 z^3 + 2/5 z^5 + ..., and 2 z - x = -x z.
+std::string remainder_function(const std::string& type, const std::string& prefix, const std::string& name) {
+  const char* all_small = prefix == "s_" ? "small > 0.0" : "lanes_above(small) == all_lanes";
+  std::string series;
+  if (name == "log1pmx") {
+    // Terms up to z^25: the first one left out is below 2^-53 of the sum for |z| < 1/5.
+    for (int k = 11; k >= 0; --k) {
+      const std::string term = fmt::format("1.0 / {}.0", 2 * k + 3);
+      series = k == 11 ? term : fmt::format("{} + z2*({})", term, series);
+    }
+    return fmt::format(
+        "static inline {0} {1}log1pmx({0} x) {{\n  const {0} z = x/(2.0 + x), z2 = z*z;\n"
+        "  {0} r = 2.0*z*z2*({2}) - x*z;\n  const {0} small = 0.04 - z2;\n"
+        "  if (!({3})) r = small > 0.0 ? r : {1}log(1.0 + x) - x;\n  return r;\n}}\n",
+        type, prefix, series, all_small);
+  }
+  // Terms up to x^16: the first one left out is below 2^-53 of the sum for |x| < 1/2.
+  for (int k = 16; k >= 3; --k)
+    series = fmt::format("1.0 + x*(1.0 / {}.0){}", k, series.empty() ? "" : "*(" + series + ")");
+  return fmt::format(
+      "static inline {0} {1}expm1mx({0} x) {{\n  {0} r = 0.5*x*x*({2});\n  const {0} small = 0.25 - x*x;\n"
+      "  if (!({3})) r = small > 0.0 ? r : {1}expm1(x) - x;\n  return r;\n}}\n",
+      type, prefix, series, all_small);
+}
+
 std::string scalar_function(const std::string& type, const std::string& prefix, const std::string& name) {
   bool two = name == "pow" || name == "atan2";
   return fmt::format("static inline {0} {1}{2}({0} a{3}) {{ return __builtin_{2}(a{4}); }}\n", type, prefix, name,
@@ -48,16 +87,29 @@ std::string vector_function(int lanes, const std::string& name) {
 
 }  // namespace
 
-std::string prelude(int lanes, const std::set<std::string>& used) {
+std::string prelude(int lanes, std::set<std::string> used) {
   if (lanes != 1 && lanes != 4 && lanes != 8) throw std::invalid_argument("prelude: lanes must be 1, 4 or 8");
   std::string out = lanes == 1
                         ? "typedef double V;\n"
                         : fmt::format("typedef double V __attribute__((vector_size({}), may_alias));\n", 8 * lanes);
+  for (const char* prefix : {"s_", "v_"}) {
+    const std::string p = prefix;
+    const bool logarithm = used.count(p + "log1pmx") > 0, exponential = used.count(p + "expm1mx") > 0;
+    if (logarithm) used.insert(p + "log");
+    if (exponential) used.insert(p + "expm1");
+    if (p == "v_" && (logarithm || exponential)) used.insert("lanes_above");
+  }
+  // In alphabetical order those that others call come first.
   for (const std::string& function : used) {
+    if (function == "lanes_above") {
+      out += lanes_above(lanes);
+      continue;
+    }
     std::string prefix = function.substr(0, 2), name = function.substr(2);
     bool one = prefix == "s_" || lanes == 1;
     std::string type = prefix == "s_" ? "double" : "V";
     std::string text = by_comparison(type, prefix, name);
+    if (text.empty() && (name == "log1pmx" || name == "expm1mx")) text = remainder_function(type, prefix, name);
     if (text.empty())
       text = one              ? scalar_function(type, prefix, name)
              : name == "sqrt" ? vector_sqrt(lanes)

@@ -1,18 +1,19 @@
 #include "codegen/principal.h"
 
+#include "codegen/differentiate.h"
+#include "codegen/lower.h"
 #include "codegen/rewrite.h"
 #include "symbolic/isotropy.h"
 
 namespace ergon {
 namespace {
 
-// The Hessian with diag(s) for F.
+// The Hessian of a module with diag(s) for F, in a graph that may be the module's own.
 class DiagonalHessian {
  public:
-  explicit DiagonalHessian(Module& module) : module_(module) {
-    Graph& g = module.graph;
-    const std::vector<NodeId> order = reachable(g, module.hessian);
-    at_.assign(static_cast<size_t>(g.size()), -1);
+  DiagonalHessian(const Module& module, Graph& to) : module_(module), to_(to) {
+    const std::vector<NodeId> order = reachable(module.graph, module.hessian);
+    at_.assign(static_cast<size_t>(module.graph.size()), -1);
     for (NodeId id : order) at_[static_cast<size_t>(id)] = substitute(id);
   }
 
@@ -25,16 +26,16 @@ class DiagonalHessian {
 
  private:
   NodeId substitute(NodeId id) {
-    Graph& g = module_.graph;
-    const Node n = g[id];
-    if (n.kind != Node::Kind::input || n.source != Source::q) return copy_node(g, id, at_, g);
-    if (n.index % 4 != 0) return g.constant(0);
-    const NodeId s = g.input(Source::stretch, n.index / 4);
-    g.set_name(s, "s" + std::to_string(n.index / 4));
-    return module_.displacement ? g.sum(-1, {{1, s}}) : s;
+    const Node n = module_.graph[id];
+    if (n.kind != Node::Kind::input || n.source != Source::q) return copy_node(module_.graph, id, at_, to_);
+    if (n.index % 4 != 0) return to_.constant(0);
+    const NodeId s = to_.input(Source::stretch, n.index / 4);
+    to_.set_name(s, "s" + std::to_string(n.index / 4));
+    return s;
   }
 
-  Module& module_;
+  const Module& module_;
+  Graph& to_;
   std::vector<NodeId> at_;
 };
 
@@ -44,7 +45,13 @@ void find_principal(Module& module) {
   if (module.points != 0 || module.constant_hessian || module.psd_hessian) return;
   if (!is_isotropic(*module.energy, module.case_name)) return;
   Graph& g = module.graph;
-  const DiagonalHessian h(module);
+  // Over F itself: with F - I, small stretches would lose digits.
+  Module direct;
+  if (module.displacement) {
+    direct = lower(*module.energy, module.case_name);
+    differentiate(direct);
+  }
+  const DiagonalHessian h(module.displacement ? direct : module, g);
   const int axes = module.q_vectors;
   for (int i = 0; i < axes; ++i)
     for (int j = 0; j <= i; ++j) module.principal.push_back(h(i, i, j, j));

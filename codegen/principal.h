@@ -1,5 +1,5 @@
 #pragma once
-// Pass 5: the Hessian of an isotropic density in its principal frame. Establishes `principal` of the module: the blocks
+// Pass 6: the Hessian of an isotropic density in its principal frame. Establishes `principal` of the module: the blocks
 // of the Hessian at F = diag(s), from which the runtime forms and projects it at any F by a singular value
 // decomposition. They come from the differentiated graph by putting diag(s) into it, so no difference of singular
 // values is ever divided by.

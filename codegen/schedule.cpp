@@ -264,6 +264,12 @@ Schedule schedule(Module& module) {
   out.gradient = scheduler.values(module.gradient);
   out.hessian = scheduler.values(module.hessian);
   out.principal = scheduler.values(module.principal);
+  if (module.near >= 0) {
+    out.near = scheduler.value(module.near);
+    out.far_value = scheduler.value(module.far.value);
+    out.far_gradient = scheduler.values(module.far.gradient);
+    out.far_hessian = scheduler.values(module.far.hessian);
+  }
   out.program = scheduler.take();
   return out;
 }

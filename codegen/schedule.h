@@ -1,5 +1,5 @@
 #pragma once
-// Pass 6: from the graph to straight-line code.
+// Pass 7: from the graph to straight-line code.
 //
 // Establishes a program in which every n-ary sum and product is a chain of two-operand instructions; what depends on
 // parameters or rest and lag data alone stands apart (lifetimes), so that it can be computed once; powers, roots and
@@ -16,6 +16,9 @@ struct Schedule {
   Program program;
   int value = -1;
   std::vector<int> active, require, gradient, hessian, principal;
+  // Set where the module has two forms (codegen/module.h).
+  int near = -1, far_value = -1;
+  std::vector<int> far_gradient, far_hessian;
 };
 
 Schedule schedule(Module& module);

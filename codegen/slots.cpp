@@ -5,7 +5,9 @@ namespace ergon {
 Slots assign_slots(const Schedule& s) {
   const Program& p = s.program;
   std::vector<int> roots = {s.value};
-  for (const auto* list : {&s.active, &s.require, &s.gradient, &s.hessian, &s.principal})
+  if (s.near >= 0) roots.insert(roots.end(), {s.near, s.far_value});
+  for (const auto* list :
+       {&s.active, &s.require, &s.gradient, &s.hessian, &s.principal, &s.far_gradient, &s.far_hessian})
     roots.insert(roots.end(), list->begin(), list->end());
 
   // The shortest lifetime among the users of each value; entry points run at Lifetime::state.

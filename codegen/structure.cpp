@@ -61,13 +61,14 @@ std::vector<char> find_nonnegative(const Module& module) {
 
 void find_structure(Module& module) {
   const Graph& g = module.graph;
-  module.constant_gradient = !depends_on_q(g, module.gradient);
-  module.constant_hessian = !depends_on_q(g, module.hessian);
+  const bool two_forms = module.near >= 0;  // each alone depends on q in what it computes
+  module.constant_gradient = !two_forms && !depends_on_q(g, module.gradient);
+  module.constant_hessian = !two_forms && !depends_on_q(g, module.hessian);
   module.zero_hessian =
       std::all_of(module.hessian.begin(), module.hessian.end(), [&](NodeId id) { return g.is_constant(id, 0); });
 
   std::vector<char> nonnegative = find_nonnegative(module);
-  module.psd_hessian = true;
+  module.psd_hessian = !two_forms;
   for (int i = 0, k = 0; i < module.q_size(); ++i)
     for (int j = 0; j <= i; ++j, ++k) {
       NodeId entry = module.hessian[static_cast<size_t>(k)];

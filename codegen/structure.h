@@ -1,5 +1,5 @@
 #pragma once
-// Pass 4: what need not be computed again, or at all. Establishes constant_gradient, constant_hessian, zero_hessian and
+// Pass 5: what need not be computed again, or at all. Establishes constant_gradient, constant_hessian, zero_hessian and
 // psd_hessian of the module.
 
 #include "codegen/module.h"

@@ -27,7 +27,11 @@ ExactInputs exact(const Inputs& inputs) {
 
 ReferenceValue evaluate_reference(const Energy& energy, const std::string& case_name, const Inputs& inputs,
                                   int digits) {
-  const ExactInputs values = exact(inputs);
+  return evaluate_reference_at(energy, case_name, exact(inputs), digits);
+}
+
+ReferenceValue evaluate_reference_at(const Energy& energy, const std::string& case_name, const ExactInputs& values,
+                                     int digits) {
   ClnAlgebra numbers(values, digits);
   JetAlgebra<ClnAlgebra> jets(energy, numbers);
   const Elaborated<Jet<ClnNumber>> result = elaborate(energy, case_name, jets);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "symbolic/cln_algebra.h"
 #include "symbolic/energy.h"
 
 namespace ergon {
@@ -25,5 +26,8 @@ struct ReferenceValue {
 // when a symbol has no value, or not as many components as it should.
 ReferenceValue evaluate_reference(const Energy& energy, const std::string& case_name, const Inputs& inputs,
                                   int digits = 50);
+// The same at exact values, such as an F that is not made of doubles.
+ReferenceValue evaluate_reference_at(const Energy& energy, const std::string& case_name, const ExactInputs& inputs,
+                                     int digits = 50);
 
 }  // namespace ergon

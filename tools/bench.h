@@ -24,9 +24,8 @@ void bench_kernels(const BenchKernels& options, Rows& rows);
 
 struct BenchCompile {
   std::vector<std::string> energies;  // empty: the catalogue
-  bool slowest = false;               // two rows more: the largest of every figure
 };
-// Two rows per energy and case: from nothing, and again with the cache that the first left (the median of five).
+// Two rows per energy and case: from nothing, and again with the cache that the first left.
 void bench_compile(const BenchCompile& options, Rows& rows);
 
 }  // namespace ergon

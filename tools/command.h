@@ -18,10 +18,10 @@ using Run = std::function<int(std::ostream& out)>;
 void add_run_command(CLI::App& app, Run& run);
 void add_check_command(CLI::App& app, Run& run);
 void add_show_command(CLI::App& app, Run& run);
-void add_cost_command(CLI::App& app, Run& run);
 void add_eval_command(CLI::App& app, Run& run);
 void add_bench_command(CLI::App& app, Run& run);
 void add_compile_command(CLI::App& app, Run& run);
+void add_accuracy_command(CLI::App& app, Run& run);
 
 // The whole program: parses the arguments (without the program's name), runs the subcommand, and writes messages as
 // "ergon: error: ..." to `err`. Returns the exit code.

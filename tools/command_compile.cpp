@@ -5,7 +5,6 @@
 #include <memory>
 #include <ostream>
 
-#include "codegen/compile_all.h"
 #include "runtime/error.h"
 #include "runtime/lanes/lanes.h"
 #include "tools/choices.h"
@@ -19,8 +18,8 @@ struct Options {
   std::string energy, catalogue, dump;
 };
 
-const std::vector<std::string> passes = {"lower",     "frontier", "differentiate", "structure",
-                                         "principal", "schedule", "emit"};
+const std::vector<std::string> passes = {"lower",     "rest",      "frontier", "differentiate",
+                                         "structure", "principal", "schedule", "emit"};
 
 int compile_one(const Options& asked, std::ostream& out) {
   if (!asked.dump.empty()) chosen("--dump", asked.dump, passes);
@@ -45,22 +44,19 @@ int compile_one(const Options& asked, std::ostream& out) {
 }
 
 int compile_catalogue(const std::string& folder, std::ostream& out) {
-  std::vector<Energy> energies;
-  for (const std::string& name : catalogue_names()) energies.push_back(find_energy(name));
-  std::vector<CompileJob> jobs;
-  for (const Energy& energy : energies) {
+  int built = 0, found = 0;
+  for (const std::string& name : catalogue_names()) {
+    const Energy energy = find_energy(name);
     for (const std::string& case_name : cases_of(energy)) {
       for (int lanes : {1, 4, 8}) {
         CompileOptions options;
         options.case_name = case_name;
         options.lanes = lanes;
         options.cache = folder;
-        jobs.push_back({&energy, options});
+        ++(compile(energy, options).cached ? found : built);
       }
     }
   }
-  int built = 0, found = 0;
-  for (const CompiledKernel& kernel : kernels_of(compile_all(jobs))) ++(kernel.cached ? found : built);
   out << fmt::format("{}: {} kernels compiled, {} already there\n", folder, built, found);
   return exit_done;
 }

@@ -185,8 +185,8 @@ TEST_F(CompileTest, EveryPassCanBeLookedAt) {
     EXPECT_THAT(text, ::testing::HasSubstr("roots %"));
   };
   generate(energy, options);
-  EXPECT_THAT(passes, ::testing::ElementsAre("lower", "frontier", "differentiate", "structure", "principal", "schedule",
-                                             "emit"));
+  EXPECT_THAT(passes, ::testing::ElementsAre("lower", "rest", "frontier", "differentiate", "structure", "principal",
+                                             "schedule", "emit"));
 }
 
 TEST(ContentHash, SeesEveryByte) {

@@ -85,6 +85,7 @@ std::vector<KernelValue> evaluate_kernel(const Energy& energy, const ErgonKernel
         double sum = 0;
         for (int c = 0; c < n; ++c)
           sum += j[static_cast<size_t>(r)][static_cast<size_t>(c)] * x[static_cast<size_t>(c)];
+        if (k.displacement && r % 4 == 0) sum -= 1;  // F - I
         q[r * w + lane] = sum;
       }
     }

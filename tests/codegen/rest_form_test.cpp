@@ -1,0 +1,115 @@
+// Which energies are rewritten about rest, and into what.
+
+#include "codegen/rest_form.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "codegen/interpret.h"
+#include "codegen/lower.h"
+#include "tests/codegen/evaluate_kernel.h"
+
+namespace ergon::testing {
+namespace {
+
+struct Rewritten {
+  Energy energy;
+  Module module;
+};
+
+std::unique_ptr<Rewritten> rewritten(const std::string& statements) {
+  auto out = std::make_unique<Rewritten>();
+  out->energy = parse_energy("density law solid\nparam a Pa (0, inf) stiffness\n" + statements + "\n", "law.energy");
+  out->module = lower(out->energy, "");
+  rest_form(out->module);
+  return out;
+}
+
+double value_at(const Module& m, NodeId node, const std::vector<double>& q) {
+  return interpret(m.graph, {node}, {.params = {3}, .raw = {}, .points = {}, .q = q, .stretch = {}})[0];
+}
+
+// F - I = size*N for a fixed N; the exact value by the reference.
+void expect_digits(const std::string& statements, double size) {
+  const auto law = rewritten(statements);
+  const Module& m = law->module;
+  ASSERT_TRUE(m.displacement) << statements;
+  const std::vector<double> direction = {0.3, -0.2, 0.5, 0.1, -0.4, 0.7, -0.6, 0.2, 0.25};
+  std::vector<double> q;
+  ExactInputs inputs = {{"a", {3}}};
+  for (size_t i = 0; i < 9; ++i) {
+    q.push_back(std::ldexp(std::round(std::ldexp(direction[i], 10)), -10) * size);
+    inputs["F"].push_back((i % 4 == 0 ? 1 : 0) + cln::rational(cln::cl_DF(q[i])));
+  }
+  const double exact = evaluate_reference_at(law->energy, "", inputs).value;
+  const bool near = m.near < 0 || value_at(m, m.near, q) > 0;
+  EXPECT_NEAR(value_at(m, near ? m.value : m.far.value, q) / exact, 1, 1e-14) << statements << " at " << size;
+}
+
+TEST(RestForm, KeepsAllDigitsOfWhatVanishesAtRest) {
+  for (const char* value : {"value a*(tr(F'*F) - 3 - 2*(det(F) - 1))", "value a*(tr(F'*F) - 3 - 2*log(det(F)))",
+                            "value a*(tr(F'*F)*det(F)^(-2/3) - 3)",
+                            "value a*(tr(F'*F)/sqrt(det(F)) - log(det(F))/2 - 3)", "value a*(exp(det(F) - 1) - det(F))",
+                            "value a*(expm1(det(F) - 1) - log1p(det(F) - 1))", "value a*(det(F) + 1/det(F) - 2)",
+                            "value a*norm2(F'*F - identity(3))", "value a*norm2(inverse(F'*F) - identity(3))",
+                            "value a*(norm(F)/sqrt(3) - 1)^2", "value a*(det(F)^3 - 3*log(det(F)) - 1)"})
+    for (const double size : {1e-9, 1e-5, 1e-2, 0.1}) expect_digits(value, size);
+}
+
+TEST(RestForm, OneFormServesSumsAndProductsTwoServeTheRest) {
+  EXPECT_EQ(rewritten("value a*norm2(F'*F - identity(3))")->module.near, -1);
+  const auto two = rewritten("value a*log(det(F))^2");
+  EXPECT_GE(two->module.near, 0);
+  std::vector<double> q(9, 0);
+  q[0] = 0.249;
+  EXPECT_GT(value_at(two->module, two->module.near, q), 0);
+  q[0] = 0.251;
+  EXPECT_LT(value_at(two->module, two->module.near, q), 0);
+}
+
+// Rest is found by exact algebra where the graph does not see it: here 1 - (1 + b) + b, and the square of a root.
+TEST(RestForm, RestIsAnIdentityInTheParameters) {
+  EXPECT_TRUE(rewritten("let b = sqrt(2)\nvalue a*(b^2*(det(F) - 1) - 2*(det(F) - 1) + norm2(F - identity(3)))")
+                  ->module.displacement);
+  EXPECT_TRUE(rewritten("param c Pa (0, inf) other\nlet b = 1 + c/a\nvalue (b - 1)*a*(det(F) - 1) - c*(det(F) - 1) + "
+                        "a*norm2(F - identity(3))")
+                  ->module.displacement);
+}
+
+// A constant at rest stays; a stress at rest, an operation without an expansion, other elements keep F.
+TEST(RestForm, LeavesWhatIsNotAtRest) {
+  const auto offset = rewritten("value a*(tr(F'*F) - 2*log(det(F)))");
+  ASSERT_TRUE(offset->module.displacement);
+  EXPECT_DOUBLE_EQ(value_at(offset->module, offset->module.value, std::vector<double>(9, 0)), 9);
+  EXPECT_FALSE(rewritten("value a*(tr(F'*F) - 3)")->module.displacement);
+  EXPECT_FALSE(rewritten("value a*abs(det(F) - 1)^3")->module.displacement);
+  EXPECT_FALSE(rewritten("value a*norm(F - identity(3))^4")->module.displacement);
+  const Energy membrane = parse_energy(
+      "density law membrane\nparam a N/m (0, inf) stiffness\nvalue a*norm2(F'*F - identity(2))\n", "law.energy");
+  Module m = lower(membrane, "");
+  rest_form(m);
+  EXPECT_FALSE(m.displacement);
+}
+
+// Lanes near rest and far from it in one vector each get their own form.
+TEST(RestForm, MixedLanesAreEachAccurate) {
+  const Energy energy = read_energy(ERGON_SOURCE_DIR "/energies/solids/neo_hookean.energy");
+  std::vector<Inputs> states;
+  for (int i = 0; i < 8; ++i) {
+    const double stretch = i % 3 == 0 ? 1 + 1e-3 : 3;
+    states.push_back({{"E", {10}}, {"nu", {0.25}}, {"F", {stretch, 0, 0, 0.125, 1, 0, 0, -0.0625, 1}}});
+  }
+  for (int lanes : test_widths()) {
+    const std::vector<KernelValue> got = evaluate_kernel(energy, *test_kernel(energy, "", lanes).table, states);
+    for (size_t i = 0; i < states.size(); ++i) {
+      const ReferenceValue exact = evaluate_reference(energy, "", states[i]);
+      EXPECT_NEAR(got[i].value, exact.value, 1e-13 * exact.value);
+      for (size_t c = 0; c < 9; ++c) EXPECT_NEAR(got[i].gradient[c], exact.gradient[c], 1e-13);
+      for (size_t c = 0; c < 81; ++c) EXPECT_NEAR(got[i].hessian[c], exact.hessian[c], 1e-12);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ergon::testing
