@@ -13,6 +13,8 @@
 
 #include <fmt/format.h>
 
+#include "codegen/hash.h"
+
 extern char** environ;
 
 namespace ergon {
@@ -30,6 +32,27 @@ std::string first_lines(const std::filesystem::path& file, int lines) {
 std::string default_compiler() {
   const char* chosen = std::getenv("ERGON_CXX");
   return chosen && *chosen ? chosen : "g++";
+}
+
+std::string compiler_identity(const std::string& compiler) {
+  namespace fs = std::filesystem;
+  std::vector<fs::path> places;
+  if (compiler.find('/') != std::string::npos) {
+    places.emplace_back(compiler);
+  } else {
+    const char* path = std::getenv("PATH");
+    std::istringstream folders(path == nullptr ? "" : path);
+    for (std::string folder; std::getline(folders, folder, ':');) places.push_back(fs::path(folder) / compiler);
+  }
+  for (const fs::path& place : places) {
+    std::error_code error;
+    const fs::path file = fs::canonical(place, error);
+    if (error || access(file.c_str(), X_OK) != 0) continue;
+    const auto size = fs::file_size(file, error);
+    const auto time = fs::last_write_time(file, error).time_since_epoch().count();
+    return content_hash(fmt::format("{} {} {}", file.string(), size, time)).substr(0, 8);
+  }
+  return "";
 }
 
 std::vector<std::string> compiler_flags(int lanes) {

@@ -17,6 +17,10 @@ class BuildError : public std::runtime_error {
 // $ERGON_CXX, or "g++".
 std::string default_compiler();
 
+// What tells one installed compiler from another: a hash of its file's path, size and time of change; "" when there is
+// no such program. An upgrade changes it.
+std::string compiler_identity(const std::string& compiler);
+
 // The command line after the compiler's name. -O1: straight-line code of this kind compiles in less time and runs
 // faster than at -O2, whose scheduling lengthens live ranges.
 std::vector<std::string> compiler_flags(int lanes);

@@ -1,5 +1,6 @@
 #include "codegen/cache.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
@@ -53,6 +54,19 @@ void write_file(const fs::path& file, const std::string& bytes) {
   if (!out) throw std::runtime_error(fmt::format("cannot write {}; is the disk full?", file.string()));
 }
 
+std::string name_of(const std::string& key, const std::string& maker) { return key + "-" + maker + ".so"; }
+
+// The files of that key, whoever made them, sorted.
+std::vector<fs::path> files_of(const fs::path& folder, const std::string& key) {
+  std::vector<fs::path> files;
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(folder, none))
+    if (entry.path().extension() == ".so" && entry.path().filename().string().starts_with(key + "-"))
+      files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
 }  // namespace
 
 KernelCache::KernelCache(std::vector<fs::path> folders) : folders_(std::move(folders)) {}
@@ -68,19 +82,21 @@ fs::path KernelCache::user_folder() {
   return fs::temp_directory_path() / fmt::format("ergon-{}", getuid());
 }
 
-std::optional<LoadedKernel> KernelCache::load(const std::string& key) const {
+std::optional<LoadedKernel> KernelCache::load(const std::string& key, const std::string& maker) const {
   for (const fs::path& folder : folders_) {
-    fs::path file = folder / (key + ".so");
-    std::error_code none;
-    if (!fs::is_regular_file(file, none)) continue;
-    if (!sealed(read_file(file))) continue;
-    if (auto kernel = open_library(file)) return kernel;
+    for (const fs::path& file : maker.empty() ? files_of(folder, key) : std::vector{folder / name_of(key, maker)}) {
+      std::error_code none;
+      if (!fs::is_regular_file(file, none)) continue;
+      if (!sealed(read_file(file))) continue;
+      if (auto kernel = open_library(file)) return kernel;
+    }
   }
   return std::nullopt;
 }
 
-LoadedKernel KernelCache::make(const std::string& key, const std::string& source, int lanes,
+LoadedKernel KernelCache::make(const std::string& key, const std::string& maker, const std::string& source, int lanes,
                                const std::string& compiler, double* compile_seconds) const {
+  const std::string name = name_of(key, maker);
   std::string tried;
   for (const fs::path& folder : folders_) {
     std::error_code error;
@@ -107,11 +123,11 @@ LoadedKernel KernelCache::make(const std::string& key, const std::string& source
       *compile_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     std::string bytes = read_file(library);
     write_file(library, bytes + std::string(kSeal) + content_hash(bytes));
-    fs::rename(library, folder / (key + ".so"));
-    fs::rename(text, folder / (key + ".cpp"));
-    if (auto kernel = open_library(folder / (key + ".so"))) return *kernel;
+    fs::rename(library, folder / name);
+    fs::rename(text, (folder / name).replace_extension(".cpp"));
+    if (auto kernel = open_library(folder / name)) return *kernel;
     const char* why = dlerror();
-    throw BuildError(fmt::format("the kernel {} was built but cannot be loaded: {}", (folder / (key + ".so")).string(),
+    throw BuildError(fmt::format("the kernel {} was built but cannot be loaded: {}", (folder / name).string(),
                                  why ? why : "wrong interface version"));
   }
   throw std::runtime_error("no folder to keep kernels in can be written (tried:" + tried +

@@ -27,13 +27,14 @@ class KernelCache {
   // this user under the temporary directory.
   static std::filesystem::path user_folder();
 
-  // The kernel of that key, if a sound file for this machine is there.
-  std::optional<LoadedKernel> load(const std::string& key) const;
+  // The kernel of that key made by that compiler (compiler_identity), if a sound file for this machine is there; with
+  // "", one made by any.
+  std::optional<LoadedKernel> load(const std::string& key, const std::string& maker) const;
 
   // Builds a library from `source` with that key and loads it. Throws BuildError; std::runtime_error when no folder is
   // writable.
-  LoadedKernel make(const std::string& key, const std::string& source, int lanes, const std::string& compiler,
-                    double* compile_seconds) const;
+  LoadedKernel make(const std::string& key, const std::string& maker, const std::string& source, int lanes,
+                    const std::string& compiler, double* compile_seconds) const;
 
  private:
   std::vector<std::filesystem::path> folders_;

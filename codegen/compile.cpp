@@ -52,34 +52,55 @@ Generated generate(const Energy& energy, const CompileOptions& options) {
     Emitted emitted = emit(out.module, code, options.lanes);
     out.source = std::move(emitted.source);
     out.counts = emitted.counts;
+    out.costs = std::move(emitted.costs);
   });
   return out;
 }
 
-CompiledKernel compile(const Energy& energy, const CompileOptions& options) {
+PreparedKernel prepare(const Energy& energy, const CompileOptions& options) {
   Generated generated = generate(energy, options);
-  CompiledKernel out;
-  out.counts = generated.counts;
-  out.times = generated.times;
-
-  std::vector<std::filesystem::path> folders = options.read_only_caches;
-  folders.push_back(options.cache.empty() ? KernelCache::user_folder() : options.cache);
-  std::string compiler = options.compiler.empty() ? default_compiler() : options.compiler;
-  std::string key =
-      energy.name + "-w" + std::to_string(options.lanes) + "-" + cache_key(generated.source, compiler, options.lanes);
+  PreparedKernel out;
+  out.kernel.counts = generated.counts;
+  out.kernel.times = generated.times;
+  out.cache = options.cache.empty() ? KernelCache::user_folder() : options.cache;
+  out.compiler = options.compiler.empty() ? default_compiler() : options.compiler;
+  out.maker = compiler_identity(out.compiler);
+  out.lanes = options.lanes;
+  out.key = energy.name + "-w" + std::to_string(options.lanes) + "-" +
+            cache_key(generated.source, out.compiler, options.lanes);
 
   auto start = std::chrono::steady_clock::now();
-  std::optional<LoadedKernel> kernel;
-  if (options.use_cached) kernel = KernelCache(folders).load(key);
-  out.cached = kernel.has_value();
-  if (!kernel)
-    kernel = KernelCache({folders.back()}).make(key, generated.source, options.lanes, compiler, &out.times.compile);
-  out.times.load = seconds_since(start) - out.times.compile;
-
-  out.library = kernel->library;
-  out.table = kernel->table;
-  out.source = std::move(generated.source);
+  std::optional<LoadedKernel> found;
+  if (options.use_cached) {
+    // What came with the program serves whatever compiler is here.
+    const KernelCache given(options.read_only_caches);
+    found = given.load(out.key, out.maker);
+    if (!found) found = given.load(out.key, "");
+    if (!found) found = KernelCache({out.cache}).load(out.key, out.maker);
+  }
+  out.kernel.cached = found.has_value();
+  if (found) {
+    out.kernel.library = found->library;
+    out.kernel.table = found->table;
+  }
+  out.kernel.times.load = seconds_since(start);
+  out.kernel.source = std::move(generated.source);
   return out;
 }
+
+CompiledKernel finish(PreparedKernel prepared) {
+  CompiledKernel out = std::move(prepared.kernel);
+  if (out.cached) return out;
+  auto start = std::chrono::steady_clock::now();
+  const LoadedKernel made =
+      KernelCache({prepared.cache})
+          .make(prepared.key, prepared.maker, out.source, prepared.lanes, prepared.compiler, &out.times.compile);
+  out.times.load += seconds_since(start) - out.times.compile;
+  out.library = made.library;
+  out.table = made.table;
+  return out;
+}
+
+CompiledKernel compile(const Energy& energy, const CompileOptions& options) { return finish(prepare(energy, options)); }
 
 }  // namespace ergon

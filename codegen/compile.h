@@ -41,6 +41,7 @@ struct Generated {
   Module module;
   std::string source;
   OperationCounts counts;
+  std::vector<EntryCost> costs;
   CompileTimes times;
 };
 
@@ -56,7 +57,20 @@ struct CompiledKernel {
 // `energy` must outlive the result's module. Throws SourceError for what cannot be compiled.
 Generated generate(const Energy& energy, const CompileOptions& options);
 
-// Also throws BuildError (codegen/build.h).
+// A kernel that was generated and, where a cache holds it, loaded; else what building it takes.
+struct PreparedKernel {
+  CompiledKernel kernel;
+  std::string key, compiler, maker;
+  std::filesystem::path cache;
+  int lanes = 1;
+};
+
+// The two halves of compile(): all that is the program's own, and the C++ compiler (which may run in several threads at
+// once). finish() throws BuildError (codegen/build.h).
+PreparedKernel prepare(const Energy& energy, const CompileOptions& options);
+CompiledKernel finish(PreparedKernel prepared);
+
+// Also throws BuildError.
 CompiledKernel compile(const Energy& energy, const CompileOptions& options);
 
 }  // namespace ergon

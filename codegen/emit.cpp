@@ -138,19 +138,19 @@ std::string kernel_table(const Module& m, const OperationCounts& c, int lanes) {
   return out;
 }
 
-std::string header(const Module& m, const OperationCounts (&counts)[2]) {
+std::string header(const Module& m, const OperationCounts (&counts)[2], const std::vector<EntryCost>& costs) {
   const OperationCounts &c = counts[0], &far = counts[1];
   std::string two_forms;
   if (m.near >= 0)
-    two_forms = fmt::format("// These are near rest (margin `near` above 0); elsewhere {}, {}, {}.\n", far.value,
-                            far.gradient, far.hessian);
+    two_forms =
+        fmt::format("// These are near rest (margin `near` above 0); elsewhere value {}, gradient {}, Hessian {}.\n",
+                    far.value, far.gradient, far.hessian);
   return fmt::format(
              "// {}{}: kernel made by Ergon from the energy below.\n"
-             "// Operations per lane: value {}, gradient {}, Hessian {} (of these {} divisions, {} square roots, {} "
-             "function calls).\n{}"
+             "// Cost per lane, as `ergon cost` tells it:\n{}{}"
              "// Kept: {} values per material, {} per element. q: {} components.\n//\n",
-             m.energy->name, m.case_name.empty() ? "" : ", case " + m.case_name, c.value, c.gradient, c.hessian,
-             c.divisions, c.roots, c.calls, two_forms, c.uniforms, c.elements, m.q_size()) +
+             m.energy->name, m.case_name.empty() ? "" : ", case " + m.case_name, cost_table(costs, "//   "), two_forms,
+             c.uniforms, c.elements, m.q_size()) +
          commented(m.energy->text) + "\n";
 }
 
@@ -209,7 +209,8 @@ Emitted emit(const Module& m, const Schedule& s, int lanes) {
   Emitted out;
   counts[0].principal = static_cast<int>(principal_text.instructions.size());
   out.counts = counts[0];
-  out.source = header(m, counts) + prelude(lanes, used) + kKernelAbiText + "\n";
+  out.costs = cost_of_entries(s);
+  out.source = header(m, counts, out.costs) + prelude(lanes, used) + kKernelAbiText + "\n";
   out.source += fmt::format(
       "static void prepare_uniforms(const double* params, double* u) {{\n  (void)params, (void)u;\n{}}}\n\n",
       uniforms.body);

@@ -2,7 +2,9 @@
 // Pass 8: straight-line code becomes self-contained C++ of W lanes, readable and without headers.
 
 #include <string>
+#include <vector>
 
+#include "codegen/cost.h"
 #include "codegen/module.h"
 #include "codegen/schedule.h"
 
@@ -24,6 +26,7 @@ struct OperationCounts {
 struct Emitted {
   std::string source;
   OperationCounts counts;
+  std::vector<EntryCost> costs;  // as the head of the source tells them
 };
 
 // The entry points of runtime/kernel.h for vectors of `lanes` doubles (1, 4 or 8).

@@ -82,16 +82,19 @@ std::vector<std::string> law_warnings(const Scene& scene, const std::vector<std:
 // Each kernel once, in the order of first use.
 class Kernels {
  public:
-  explicit Kernels(const KernelSource& source) : source_(&source) {}
-  Kernel get(const Energy& energy) {
-    auto found = loaded_.find(&energy);
-    if (found == loaded_.end()) found = loaded_.emplace(&energy, (*source_)(energy, "")).first;
-    return found->second;
+  void want(const Energy* energy) {
+    if (energy != nullptr && std::find(wanted_.begin(), wanted_.end(), energy) == wanted_.end())
+      wanted_.push_back(energy);
+  }
+  void load(const KernelSource& source) { loaded_ = source(wanted_); }
+  const Kernel& get(const Energy& energy) const {
+    const auto found = std::find(wanted_.begin(), wanted_.end(), &energy);
+    return loaded_.at(static_cast<size_t>(found - wanted_.begin()));
   }
 
  private:
-  const KernelSource* source_;
-  std::map<const Energy*, Kernel> loaded_;
+  std::vector<const Energy*> wanted_;
+  std::vector<Kernel> loaded_;
 };
 
 std::vector<int> edges_of(const Body& body) {
@@ -131,7 +134,7 @@ Potential object_potential(const UsedLaw& law, const Kernel& kernel, const Body&
                                 point_masses(*law.energy, mass, first, count));
 }
 
-void add_object(const SceneObject& object, const std::vector<UsedLaw>& laws, const Body& body, Kernels& kernels,
+void add_object(const SceneObject& object, const std::vector<UsedLaw>& laws, const Body& body, const Kernels& kernels,
                 BuiltScene& out) {
   for (size_t i = 0; i < laws.size(); ++i) try {
       out.system->add(object_potential(laws[i], kernels.get(*laws[i].energy), body, out.start.x, out.mass));
@@ -140,7 +143,7 @@ void add_object(const SceneObject& object, const std::vector<UsedLaw>& laws, con
     }
 }
 
-void add_world(const Scene& scene, const WorldLaws& world, Kernels& kernels, BuiltScene& out) {
+void add_world(const Scene& scene, const WorldLaws& world, const Kernels& kernels, BuiltScene& out) {
   const Eigen::Matrix3Xd& X = out.start.x;
   const int n = out.system->vertices();
   out.system->add(Potential::on_stencils("inertia", kernels.get(*world.inertia), points_of(0, n), X, {},
@@ -210,7 +213,7 @@ BuiltScene build_scene(const Scene& scene, const Catalogue& catalogue, const Ker
   BuiltScene out;
   const std::string folder = std::filesystem::path(scene.file).parent_path().string();
   Laws laws(catalogue, folder);
-  Kernels kernels(kernel_source);
+  Kernels kernels;
   std::vector<std::vector<UsedLaw>> used;
   WorldLaws world;
   {
@@ -228,9 +231,9 @@ BuiltScene build_scene(const Scene& scene, const Catalogue& catalogue, const Ker
   {
     Stopwatch watch(out.seconds.kernels);
     for (const auto& object : used)
-      for (const UsedLaw& law : object) kernels.get(*law.energy);
-    for (const Energy* law : {world.inertia, world.gravity, world.barrier, world.friction})
-      if (law != nullptr) kernels.get(*law);
+      for (const UsedLaw& law : object) kernels.want(law.energy);
+    for (const Energy* law : {world.inertia, world.gravity, world.barrier, world.friction}) kernels.want(law);
+    kernels.load(kernel_source);
   }
   {
     Stopwatch watch(out.seconds.setup);

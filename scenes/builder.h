@@ -19,8 +19,8 @@
 
 namespace ergon {
 
-// Compiles or loads the kernel of one case of an energy ("" when it has no cases).
-using KernelSource = std::function<Kernel(const Energy& energy, const std::string& case_name)>;
+// Compiles or loads the kernels of energies without cases, in their order.
+using KernelSource = std::function<std::vector<Kernel>(const std::vector<const Energy*>& energies)>;
 
 struct BuildSeconds {
   double energies = 0;  // read and checked

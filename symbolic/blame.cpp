@@ -92,14 +92,14 @@ const Expression& first_change(const Energy& energy, const std::string& case_nam
   }
 }
 
-std::vector<Term> terms_at(const Energy& energy, const std::string& case_name, const ExactInputs& inputs,
-                           size_t component) {
+std::vector<ValueTerm> terms_at(const Energy& energy, const std::string& case_name, const ExactInputs& inputs,
+                                size_t component) {
   ClnAlgebra numbers(inputs, digits);
   TracedJets jets(energy, numbers);
   elaborate(energy, case_name, jets);
   std::vector<std::pair<const Expression*, double>> signed_terms;
   add_terms(*energy.value, 1, signed_terms);
-  std::vector<Term> terms;
+  std::vector<ValueTerm> terms;
   for (const auto& [term, sign] : signed_terms) {
     for (const auto& [expression, components] : jets.parts) {
       if (expression != term) continue;

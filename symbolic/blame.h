@@ -17,12 +17,12 @@ const Expression& first_change(const Energy& energy, const std::string& case_nam
                                const ExactInputs& b);
 
 // The terms of the value as a sum, with their signs, and each term's derivative by one component of the dofs.
-struct Term {
+struct ValueTerm {
   const Expression* expression;
   double value;
   double derivative;
 };
-std::vector<Term> terms_at(const Energy& energy, const std::string& case_name, const ExactInputs& inputs,
-                           size_t component);
+std::vector<ValueTerm> terms_at(const Energy& energy, const std::string& case_name, const ExactInputs& inputs,
+                                size_t component);
 
 }  // namespace ergon

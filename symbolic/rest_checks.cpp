@@ -157,9 +157,9 @@ std::vector<std::vector<double>> strains(const Energy& energy) {
 }
 
 // "mu/2*(tr(F'*F) - 3) gives 4, la/2*(det(F) - 1)^2 gives 0": where the value is a sum.
-std::string terms_text(const std::vector<Term>& terms) {
+std::string terms_text(const std::vector<ValueTerm>& terms) {
   std::vector<std::string> texts;
-  for (const Term& term : terms)
+  for (const ValueTerm& term : terms)
     texts.push_back(fmt::format("{} gives {:.4g}", to_text(*term.expression), term.derivative + 0.0));
   return texts.size() < 2 ? "" : fmt::format(" ({})", fmt::join(texts, ", "));
 }

@@ -238,8 +238,8 @@ std::vector<Finding> check_boundaries(const Energy& energy, const std::string& c
     const Limit limit = limit_at_boundary(energy, case_name, state->inputs, boundary);
     if (limit.effect != Effect::value_grows) continue;
     const auto terms = terms_at(energy, case_name, limit.nearby, 0);
-    const auto lowest =
-        std::min_element(terms.begin(), terms.end(), [](const Term& a, const Term& b) { return a.value < b.value; });
+    const auto lowest = std::min_element(terms.begin(), terms.end(),
+                                         [](const ValueTerm& a, const ValueTerm& b) { return a.value < b.value; });
     found.push_back({Severity::error, "boundary",
                      fmt::format("the value falls without bound towards the boundary of `require {}`, where {} is "
                                  "{:.4g}{}; change a sign, or narrow the ranges of the params",

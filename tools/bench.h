@@ -24,8 +24,9 @@ void bench_kernels(const BenchKernels& options, Rows& rows);
 
 struct BenchCompile {
   std::vector<std::string> energies;  // empty: the catalogue
+  bool slowest = false;               // two rows more: the largest of every figure
 };
-// Two rows per energy and case: from nothing, and again with the cache that the first left.
+// Two rows per energy and case: from nothing, and again with the cache that the first left (the median of five).
 void bench_compile(const BenchCompile& options, Rows& rows);
 
 }  // namespace ergon

@@ -18,6 +18,7 @@ using Run = std::function<int(std::ostream& out)>;
 void add_run_command(CLI::App& app, Run& run);
 void add_check_command(CLI::App& app, Run& run);
 void add_show_command(CLI::App& app, Run& run);
+void add_cost_command(CLI::App& app, Run& run);
 void add_eval_command(CLI::App& app, Run& run);
 void add_bench_command(CLI::App& app, Run& run);
 void add_compile_command(CLI::App& app, Run& run);

@@ -43,6 +43,7 @@ void add_compile(CLI::App& bench, Run& run) {
   auto json = std::make_shared<bool>(false);
   command->add_option("--energy", options->energies, "name or file; may be repeated; default: the catalogue")
       ->take_all();
+  command->add_flag("--all", options->slowest, "the whole catalogue, then the largest of every figure");
   command->add_flag("--json", *json, "one JSON object per line instead of a table");
   command->callback([options, json, &run] {
     run = [options, json](std::ostream& out) {

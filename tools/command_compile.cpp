@@ -5,6 +5,7 @@
 #include <memory>
 #include <ostream>
 
+#include "codegen/compile_all.h"
 #include "runtime/error.h"
 #include "runtime/lanes/lanes.h"
 #include "tools/choices.h"
@@ -44,19 +45,22 @@ int compile_one(const Options& asked, std::ostream& out) {
 }
 
 int compile_catalogue(const std::string& folder, std::ostream& out) {
-  int built = 0, found = 0;
-  for (const std::string& name : catalogue_names()) {
-    const Energy energy = find_energy(name);
+  std::vector<Energy> energies;
+  for (const std::string& name : catalogue_names()) energies.push_back(find_energy(name));
+  std::vector<CompileJob> jobs;
+  for (const Energy& energy : energies) {
     for (const std::string& case_name : cases_of(energy)) {
       for (int lanes : {1, 4, 8}) {
         CompileOptions options;
         options.case_name = case_name;
         options.lanes = lanes;
         options.cache = folder;
-        ++(compile(energy, options).cached ? found : built);
+        jobs.push_back({&energy, options});
       }
     }
   }
+  int built = 0, found = 0;
+  for (const CompiledKernel& kernel : kernels_of(compile_all(jobs))) ++(kernel.cached ? found : built);
   out << fmt::format("{}: {} kernels compiled, {} already there\n", folder, built, found);
   return exit_done;
 }

@@ -72,6 +72,7 @@ int run_command_line(std::vector<std::string> arguments, std::ostream& out, std:
   add_check_command(app, run);
   add_show_command(app, run);
   add_compile_command(app, run);
+  add_cost_command(app, run);
   add_eval_command(app, run);
   add_bench_command(app, run);
   add_accuracy_command(app, run);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "codegen/compile_all.h"
 #include "runtime/error.h"
 #include "scenes/catalogue.h"
 #include "tools/choices.h"
@@ -36,6 +37,15 @@ CompileOptions compile_options(const std::string& case_name, int lanes) {
 Kernel load_kernel(const Energy& energy, const std::string& case_name, int lanes) {
   const CompiledKernel compiled = compile(energy, compile_options(case_name, lanes));
   return {compiled.library, compiled.table};
+}
+
+std::vector<Kernel> load_kernels(const std::vector<const Energy*>& energies, int lanes) {
+  std::vector<CompileJob> jobs;
+  for (const Energy* energy : energies) jobs.push_back({energy, compile_options("", lanes)});
+  std::vector<Kernel> kernels;
+  for (const CompiledKernel& compiled : kernels_of(compile_all(jobs)))
+    kernels.push_back({compiled.library, compiled.table});
+  return kernels;
 }
 
 }  // namespace ergon

@@ -27,4 +27,7 @@ CompileOptions compile_options(const std::string& case_name, int lanes);
 // Compiled, or from a cache.
 Kernel load_kernel(const Energy& energy, const std::string& case_name, int lanes);
 
+// Of energies without cases, in their order; those that no cache holds are compiled side by side.
+std::vector<Kernel> load_kernels(const std::vector<const Energy*>& energies, int lanes);
+
 }  // namespace ergon

@@ -59,8 +59,8 @@ RunSummary run_scene_file(const SceneRun& options) {
   run.folder = folder_of(options, scene);
   if (!run.folder.empty()) prepare_output(run.folder);
   const Catalogue catalogue(Catalogue::default_folders());
-  BuiltScene built = build_scene(scene, catalogue, [](const Energy& energy, const std::string& case_name) {
-    return load_kernel(energy, case_name, lanes::best_lanes());
+  BuiltScene built = build_scene(scene, catalogue, [](const std::vector<const Energy*>& energies) {
+    return load_kernels(energies, lanes::best_lanes());
   });
   InterruptGuard guard;
   run.stop = [] { return interrupted != 0; };

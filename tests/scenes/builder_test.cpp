@@ -26,9 +26,9 @@ energy = [{ law = "stable_neo_hookean", E = "0.5 MPa", nu = 0.4 }]
 // The laws whose kernels a scene asks for.
 std::vector<std::string> kernels_of(const std::string& text) {
   std::vector<std::string> asked;
-  build_scene(read_scene_text(text, "a.toml"), shipped_energies(), [&](const Energy& energy, const std::string& c) {
-    asked.push_back(energy.name);
-    return real_kernel(energy, c);
+  build_scene(read_scene_text(text, "a.toml"), shipped_energies(), [&](const std::vector<const Energy*>& energies) {
+    for (const Energy* energy : energies) asked.push_back(energy->name);
+    return real_kernels(energies);
   });
   return asked;
 }

@@ -34,8 +34,9 @@ std::string without(std::string text, const std::string& part) {
 }
 
 std::string message_of(const std::string& name) {
-  const KernelSource none = [](const Energy& energy, const std::string&) -> Kernel {
-    throw std::logic_error("the kernel of " + energy.name + " was asked for before the scene was found to be wrong");
+  const KernelSource none = [](const std::vector<const Energy*>& energies) -> std::vector<Kernel> {
+    throw std::logic_error("the kernel of " + energies.front()->name +
+                           " was asked for before the scene was found to be wrong");
   };
   try {
     const Scene scene = read_scene(folder + "/" + name + ".toml");

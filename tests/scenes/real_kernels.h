@@ -1,26 +1,29 @@
 #pragma once
 // Kernels for tests of scenes: compiled for this machine, or from the cache.
 
-#include "codegen/compile.h"
+#include "codegen/compile_all.h"
 #include "runtime/lanes/lanes.h"
 #include "scenes/builder.h"
 #include "scenes/scene_reader.h"
 
 namespace ergon {
 
-inline Kernel real_kernel(const Energy& energy, const std::string& case_name) {
+inline std::vector<Kernel> real_kernels(const std::vector<const Energy*>& energies) {
   CompileOptions options;
-  options.case_name = case_name;
   options.lanes = lanes::best_lanes();
   options.read_only_caches = {ERGON_BINARY_DIR "/kernels"};
-  const CompiledKernel compiled = compile(energy, options);
-  return {compiled.library, compiled.table};
+  std::vector<CompileJob> jobs;
+  for (const Energy* energy : energies) jobs.push_back({energy, options});
+  std::vector<Kernel> kernels;
+  for (const CompiledKernel& compiled : kernels_of(compile_all(jobs)))
+    kernels.push_back({compiled.library, compiled.table});
+  return kernels;
 }
 
 inline Catalogue shipped_energies() { return Catalogue({ERGON_SOURCE_DIR "/energies"}); }
 
 inline BuiltScene build_text(const std::string& text, const std::string& file = "a.toml") {
-  return build_scene(read_scene_text(text, file), shipped_energies(), real_kernel);
+  return build_scene(read_scene_text(text, file), shipped_energies(), real_kernels);
 }
 
 }  // namespace ergon

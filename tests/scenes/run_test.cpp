@@ -37,7 +37,7 @@ class run : public testing::Test {
   void TearDown() override { fs::remove_all(folder); }
   RunSummary go(const std::string& text, RunOptions options = {}) {
     const Scene scene = read_scene_text(text, "falling.toml");
-    BuiltScene built = build_scene(scene, shipped_energies(), real_kernel);
+    BuiltScene built = build_scene(scene, shipped_energies(), real_kernels);
     options.folder = folder.string();
     return run_scene(scene, built, options);
   }

@@ -18,7 +18,7 @@ struct Finished {
 
 Finished finish(const std::string& name) {
   const Scene scene = read_scene(ERGON_SOURCE_DIR "/scenes/" + name);
-  Finished out{build_scene(scene, shipped_energies(), real_kernel), {}, {}};
+  Finished out{build_scene(scene, shipped_energies(), real_kernels), {}, {}};
   RunOptions options;
   options.last_state = &out.end;
   out.summary = run_scene(scene, out.built, options);
@@ -30,7 +30,7 @@ TEST(shipped_scenes, all_are_read_and_built) {
   for (const auto& entry : std::filesystem::directory_iterator(ERGON_SOURCE_DIR "/scenes")) {
     if (entry.path().extension() != ".toml") continue;
     ++scenes;
-    EXPECT_NO_THROW(build_scene(read_scene(entry.path().string()), shipped_energies(), real_kernel)) << entry.path();
+    EXPECT_NO_THROW(build_scene(read_scene(entry.path().string()), shipped_energies(), real_kernels)) << entry.path();
   }
   EXPECT_GE(scenes, 2);
 }

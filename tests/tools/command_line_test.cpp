@@ -1,4 +1,5 @@
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
 
 #include "tests/tools/command.h"
 
@@ -26,7 +27,7 @@ TEST_F(CommandLine, TellsItsVersionAndHelps) {
   EXPECT_THAT(version.out, MatchesRegex("ergon [0-9]+\\.[0-9]+\\.[0-9]+\n"));
   const Answer help = ergon("--help");
   EXPECT_EQ(help.code, 0);
-  for (const char* command : {"run", "check", "show", "compile", "eval", "bench"}) {
+  for (const char* command : {"run", "check", "show", "compile", "cost", "eval", "bench"}) {
     EXPECT_THAT(help.out, HasSubstr(std::string("\n  ") + command));
     const Answer one = ergon(std::string(command) + " --help");
     EXPECT_EQ(one.code, 0) << command;
@@ -35,7 +36,7 @@ TEST_F(CommandLine, TellsItsVersionAndHelps) {
 }
 
 TEST_F(CommandLine, NamesWhatWasMisspelt) {
-  expect("", 2, "'ergon' needs a command: run, check, show, compile, eval, bench, accuracy");
+  expect("", 2, "'ergon' needs a command: run, check, show, compile, cost, eval, bench, accuracy");
   expect("chek x", 2, "unknown command 'ergon chek'; did you mean 'check'?");
   expect("bench kernel", 2, "unknown command 'ergon bench kernel'; did you mean 'kernels'?");
   expect("bench", 2, "'ergon bench' needs a command: kernels, compile, scene");
@@ -84,6 +85,36 @@ TEST_F(CommandLine, ShowsFormulaSymbolsAndCost) {
   EXPECT_THAT(ergon("show stable_neo_hookean --latex").out, HasSubstr("\\det"));
   EXPECT_THAT(ergon("show stable_neo_hookean --source").out, HasSubstr("ergon_kernel"));
   expect("show stable_neo_hookean --case face", 2, "--case: stable_neo_hookean has no cases");
+}
+
+TEST_F(CommandLine, TheCostIsThatOfTheEmittedFile) {
+  const Answer answer = ergon("cost stable_neo_hookean");
+  EXPECT_EQ(answer.code, 0) << answer.err;
+  const std::string source = ergon("show stable_neo_hookean --source").out;
+  int lines = 0;
+  std::istringstream text(answer.out);
+  for (std::string line; std::getline(text, line);) {
+    if (line.starts_with("per element")) break;
+    if (!line.starts_with("  ")) continue;
+    ++lines;
+    EXPECT_THAT(source, HasSubstr("// " + line + "\n"));
+  }
+  EXPECT_EQ(lines, 8);  // titles and seven entry points
+  EXPECT_THAT(answer.out, HasSubstr("\nTet4 "));
+  EXPECT_THAT(answer.out, HasSubstr("\nHex8 "));
+  EXPECT_THAT(answer.out, Not(HasSubstr("Tri3")));
+
+  std::istringstream json(ergon("cost spring --json").out);
+  std::vector<nlohmann::json> rows;
+  for (std::string line; std::getline(json, line);) rows.push_back(nlohmann::json::parse(line));
+  ASSERT_EQ(rows.size(), 7u);
+  EXPECT_EQ(rows[3]["entry"], "value");
+  EXPECT_EQ(rows[3]["bytes_in"], 32);  // the difference of two points, and the rest length
+  EXPECT_EQ(rows[3]["bytes_uniform"], 8);
+  EXPECT_EQ(rows[5]["bytes_out"], 8 * (1 + 3 + 6));
+  EXPECT_EQ(rows[6]["element"], "edge");
+  EXPECT_EQ(rows[6]["matrix_bytes"], 3 * 72);
+  EXPECT_EQ(rows[6]["operations"], rows[5]["operations"]);
 }
 
 TEST_F(CommandLine, ShowsTheSameSourceInTwoProcesses) {
