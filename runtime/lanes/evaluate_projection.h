@@ -25,31 +25,15 @@ class ProjectionBatch {
     sort_by_lanes();
     int first = 0, last = size_ - 1;
     while (first <= last) {
-      const Waiting base = waiting_[first++];
-      for (int e = 0; e < kPacked; ++e) store(matrix_ + e * kWidth, load(base.packed + e * kWidth));
-      unsigned lent = 0;
-      double* borrower[kWidth];
-      for (int l = 0; l < kWidth && first <= last; ++l) {
-        if ((base.lanes >> l & 1) != 0) continue;
-        Waiting& other = waiting_[last];
-        borrower[l] = other.packed + __builtin_ctz(other.lanes);
-        for (int e = 0; e < kPacked; ++e) matrix_[e * kWidth + l] = borrower[l][e * kWidth];
-        lent |= 1u << l;
-        other.lanes &= other.lanes - 1;
-        if (other.lanes == 0) --last;
+      full_[0].take(waiting_, first, last);
+      if (first <= last) {
+        full_[1].take(waiting_, first, last);
+        project_lanes<N>(full_[0].matrix, full_[0].lanes(), full_[1].matrix, full_[1].lanes(), mode_);
+        full_[1].give_back(changed_);
+      } else {
+        project_lanes<N>(full_[0].matrix, mode_, full_[0].lanes());
       }
-      project_lanes<N>(matrix_, mode_, base.lanes | lent);
-      count_changes(base.packed, base.lanes);
-      const Mask own = from_bits(base.lanes);
-      for (int e = 0; e < kPacked; ++e) {
-        double* entry = base.packed + e * kWidth;
-        store(entry, select(own, load(matrix_ + e * kWidth), load(entry)));
-      }
-      for (; lent != 0; lent &= lent - 1) {
-        const int l = __builtin_ctz(lent);
-        count_change(borrower[l], l);
-        for (int e = 0; e < kPacked; ++e) borrower[l][e * kWidth] = matrix_[e * kWidth + l];
-      }
+      full_[0].give_back(changed_);
     }
     size_ = 0;
   }
@@ -64,6 +48,59 @@ class ProjectionBatch {
     unsigned lanes;
   };
 
+  // The matrices of one block and, in its free lanes, some of others.
+  struct Full {
+    alignas(64) double matrix[kPacked * kWidth];
+    Waiting base;
+    unsigned lent;
+    double* borrower[kWidth];
+
+    unsigned lanes() const { return base.lanes | lent; }
+
+    // Takes the matrices from both ends of those that wait: a whole block from the first, single lanes from the last.
+    void take(Waiting* waiting, int& first, int& last) {
+      base = waiting[first++];
+      for (int e = 0; e < kPacked; ++e) store(matrix + e * kWidth, load(base.packed + e * kWidth));
+      lent = 0;
+      for (int l = 0; l < kWidth && first <= last; ++l) {
+        if ((base.lanes >> l & 1) != 0) continue;
+        Waiting& other = waiting[last];
+        borrower[l] = other.packed + __builtin_ctz(other.lanes);
+        for (int e = 0; e < kPacked; ++e) matrix[e * kWidth + l] = borrower[l][e * kWidth];
+        lent |= 1u << l;
+        other.lanes &= other.lanes - 1;
+        if (other.lanes == 0) --last;
+      }
+    }
+
+    // Writes the projected matrices where they came from and counts those that differ. Raising an eigenvalue raises the
+    // trace, so some diagonal entry.
+    void give_back(long& changed) const {
+      unsigned raised = 0;
+      for (int i = 0; i < N; ++i) {
+        const int e = i * (i + 3) / 2 * kWidth;
+        const Real before = load(base.packed + e), after = load(matrix + e);
+        raised |= bits(less(before, after)) | bits(less(after, before));
+      }
+      changed += __builtin_popcount(raised & base.lanes);
+      const Mask own = from_bits(base.lanes);
+      for (int e = 0; e < kPacked; ++e) {
+        double* entry = base.packed + e * kWidth;
+        store(entry, select(own, load(matrix + e * kWidth), load(entry)));
+      }
+      for (unsigned rest = lent; rest != 0; rest &= rest - 1) {
+        const int l = __builtin_ctz(rest);
+        bool differs = false;
+        for (int i = 0; i < N; ++i) {
+          const int e = i * (i + 3) / 2 * kWidth;
+          differs |= matrix[e + l] != borrower[l][e];
+        }
+        changed += differs;
+        for (int e = 0; e < kPacked; ++e) borrower[l][e * kWidth] = matrix[e * kWidth + l];
+      }
+    }
+  };
+
   // Most lanes first; equal numbers keep their order.
   void sort_by_lanes() {
     int start[kWidth + 2] = {};
@@ -74,23 +111,7 @@ class ProjectionBatch {
     for (int i = 0; i < size_; ++i) waiting_[i] = sorted[i];
   }
 
-  // Raising an eigenvalue raises the trace, so some diagonal entry.
-  void count_changes(const double* packed, unsigned lanes) {
-    unsigned changed = 0;
-    for (int i = 0; i < N; ++i) {
-      const int e = i * (i + 3) / 2 * kWidth;
-      const Real before = load(packed + e), after = load(matrix_ + e);
-      changed |= bits(less(before, after)) | bits(less(after, before));
-    }
-    changed_ += __builtin_popcount(changed & lanes);
-  }
-  void count_change(const double* source, int lane) {
-    bool changed = false;
-    for (int i = 0; i < N; ++i) changed |= matrix_[i * (i + 3) / 2 * kWidth + lane] != source[i * (i + 3) / 2 * kWidth];
-    changed_ += changed;
-  }
-
-  alignas(64) double matrix_[kPacked * kWidth];
+  Full full_[2];
   Waiting waiting_[kCapacity];
   int size_ = 0;
   long changed_ = 0;

@@ -1,100 +1,148 @@
 #pragma once
-// The lowest eigenvalues of a symmetric tridiagonal matrix per lane, all at once, by Laguerre's iteration inside
-// brackets (Li and Zeng 1994, The Laguerre iteration in solving the symmetric tridiagonal eigenproblem, revisited, SIAM
-// J. Sci. Comput. 15(5)). It establishes brackets that shrink: a Laguerre step with multiplicity r, from a point
-// between which and eigenvalue j there are r - 1 others, moves towards eigenvalue j and does not pass it.
+// The lowest eigenvalues of symmetric tridiagonal matrices, one per lane, one after the other from below, by Laguerre's
+// iteration on the characteristic polynomial without the roots found before (Parlett 1964, Laguerre's method applied to
+// the matrix eigenvalue problem, Math. Comp. 18). It establishes, from a point below all eigenvalues, approximations
+// that one step of inverse iteration makes exact, also beside a cluster around zero; a cluster of wanted eigenvalues
+// converges slowly and is reported.
 
 #include "runtime/lanes/projection_vector.h"
 
 namespace ergon::lanes {
 namespace {
 
-// det(T - x), its first derivative and half its second, and the number of eigenvalues below x.
+// det(T - x), its first derivative and half its second.
 struct Characteristic {
   Real p, p1, p2;
-  Real below;
 };
 
-// squares[i] = e[i]^2 is not zero: then no two neighbours in the sequence of minors vanish.
+// squares[i] = e[i]^2.
 template <int N>
 inline Characteristic characteristic(const Real* d, const Real* squares, Real x) {
   Real t = d[0] - x;
   Real before = splat(1), before1 = splat(0), before2 = splat(0);
   Real p = t, p1 = splat(-1), p2 = splat(0);
-  Real signs = half_sign_product(p, before);
 #pragma GCC unroll 12
   for (int i = 1; i < N; ++i) {
     t = d[i] - x;
-    Real next = t * p - squares[i - 1] * before;
-    Real next1 = t * p1 - (p + squares[i - 1] * before1);
-    Real next2 = t * p2 - (p1 + squares[i - 1] * before2);
-    signs += half_sign_product(next, p);
+    const Real next = t * p - squares[i - 1] * before;
+    const Real next1 = t * p1 - (p + squares[i - 1] * before1);
+    const Real next2 = t * p2 - (p1 + squares[i - 1] * before2);
     before = p, before1 = p1, before2 = p2;
     p = next, p1 = next1, p2 = next2;
   }
-  return {p, p1, p2, 0.5 * N - signs};
+  return {p, p1, p2};
 }
 
-// The length of the step of multiplicity r, upwards for side = 1 and downwards for side = -1.
-// With y_i = 1/(x_i - x) over the eigenvalues x_i, of which r have y_i >= y: given the sums of y_i and y_i^2, y is
-// largest when these r are equal and so are the others, and 1/y is the step.
+// The number of eigenvalues below x. squares[i] is not zero: then no two neighbours in the sequence of minors vanish.
 template <int N>
-inline Real laguerre_step(const Characteristic& f, Real r, Real side) {
-  Real discriminant = (N - 1.0) * f.p1 * f.p1 - (2.0 * N) * f.p2 * f.p;
-  Real root = sqrt(max(discriminant * (N - r) * r, splat(0)));
-  return (N * f.p * r) / (copysign(root, f.p) - side * f.p1 * r);
+inline Real eigenvalues_below(const Real* d, const Real* squares, Real x) {
+  Real before = splat(1), p = d[0] - x;
+  Real signs = half_sign_product(p, before);
+#pragma GCC unroll 12
+  for (int i = 1; i < N; ++i) {
+    const Real next = (d[i] - x) * p - squares[i - 1] * before;
+    signs += half_sign_product(next, p);
+    before = p;
+    p = next;
+  }
+  return 0.5 * N - signs;
 }
 
-// Sets x[j] to eigenvalue j (0 is the lowest) in the lanes open[j], j < count, and to zero elsewhere. `negative` is the
-// number of eigenvalues below `limit` < 0, of which j is one; `bound` is below all. `at_limit` is the characteristic of
-// T at limit or, in lanes where mirror is -1 instead of 1, that of -T at -limit. Returns the lanes in which something
-// did not converge, which clusters cause.
+// A search for the lowest eigenvalues of one matrix per lane.
 template <int N>
-inline unsigned lowest_eigenvalues(const Real* d, const Real* squares, Real bound, Real limit,
-                                   const Characteristic& at_limit, Real mirror, Real negative, int count,
-                                   unsigned* open, Real* x) {
-  Real low[N / 2] = {}, high[N / 2] = {}, last[N / 2] = {};
-  Characteristic start = characteristic<N>(d, squares, bound);
-  for (int j = 0; j < count; ++j) {
-    Mask chosen = from_bits(open[j]);
-    last[j] = laguerre_step<N>(start, splat(j + 1), splat(1));
-    low[j] = select(chosen, bound + last[j], splat(0));
-    high[j] = select(chosen, limit - laguerre_step<N>(at_limit, max(negative - j, splat(1)), -mirror), splat(0));
-    x[j] = low[j];
-    if (j > 0) {
-      x[j] = 0.5 * (low[j] + high[j]);
-      last[j] = splat(0);
+struct Laguerre {
+  Real at;             // where the iteration is
+  Real top;            // not below the largest eigenvalue, and near it
+  Mask crowded;        // lanes in which the last step saw two eigenvalues close together
+  Real found;          // number of eigenvalues found
+  Real lowest[N / 2];  // these, and what is as good as infinite
+  unsigned open;       // lanes in which more are wanted
+
+  // From above, where a Laguerre step does not pass the largest eigenvalue. It is taken out of what follows since the
+  // Hessians of stencils have one eigenvalue far above all others, which then are a cluster seen from below.
+  void start(const Real* d, const Real* squares, Real bound, unsigned lanes) {
+    top = bound;
+    for (int i = 0; i < 2; ++i) {
+      const Characteristic f = characteristic<N>(d, squares, top);
+      const Real inverse = 1 / f.p, s1 = f.p1 * inverse, s2 = s1 * s1 - 2 * f.p2 * inverse;
+      top -= N / (s1 + sqrt(max((N - 1) * (N * s2 - s1 * s1), splat(0))));
+    }
+    at = -bound;
+    crowded = from_bits(0);
+    found = splat(0);
+    for (Real& x : lowest) x = splat(1e300);
+    open = lanes;
+  }
+
+  // With y_i = 1/(x_i - at) over the eigenvalues x_i that were not found yet: given the sums of y_i and of y_i^2, the
+  // largest y_i is largest when all others are equal, so that a step of 1/y does not pass the lowest x_i.
+  void step(const Real* d, const Real* squares, Real norm, Real wanted) {
+    const Characteristic f = characteristic<N>(d, squares, at);
+    const Real inverse = 1 / f.p, newton = -f.p1 * inverse, above = 1 / (top - at);
+    Real s1 = newton - above, s2 = newton * newton - 2 * f.p2 * inverse - above * above, sign = f.p;
+#pragma GCC unroll 6
+    for (const Real& x : lowest) {
+      const Real y = 1 / (x - at);
+      sign = half_sign_product(sign, y);
+      s1 -= y;
+      s2 -= y * y;
+    }
+    const Real left = (N - 1) - found;
+    // Seen from afar all others are one cluster: what is added outweighs the rounding of s1 and s2 (a thousand times
+    // that of p1/p when a lower eigenvalue is taken out beside it), so that none of the cluster is passed.
+    // One eigenvalue that was passed lies below.
+    const Mask up = less(splat(0), sign);
+    const Real side = select(up, splat(1), splat(-1));
+    const Real spread = select(both(up, crowded), 0.5 * left - 1, left - 1);
+    const Real root = sqrt(max(spread * (left * s2 - s1 * s1), splat(0)) + 1e-10 * (s1 * s1));
+    const Real size = left / (side * s1 + root);
+    const Real next = at + side * size;
+    // Two that lie close together slow the iteration down; a step for two, which does not pass the second, does not.
+    // The step is of third order: its error is about itself times the sum of (size/distance)^2 over the others.
+    const Real others = s2 * size * size - 1;
+    const Mask small = less(size * others, splat(1e-15));
+    crowded = less(splat(0.25), others);
+    const Mask done = both(small, from_bits(open));
+    at = select(from_bits(open), next, at);
+    for (int j = 0; j < N / 2; ++j) {
+      const Mask here = both(done, both(less(splat(j - 0.5), found), less(found, splat(j + 0.5))));
+      lowest[j] = select(here, at, lowest[j]);
+    }
+    at = select(done, at - 1e-3 * norm, at);
+    found = select(done, found + 1, found);
+    open &= bits(less(found + 0.5, wanted));
+  }
+};
+
+// For each of G groups of matrices: finds eigenvalue j (0 is the lowest) in the lanes pairs.wanted[j]; zero elsewhere.
+// Sets `failed` to the lanes in which something did not converge. Steps of the groups are taken in turn, so that none
+// waits for the other's arithmetic.
+template <int N, int G, class Group>
+inline void lowest_eigenvalues(Group* groups) {
+  constexpr int kSteps = 8;  // for each eigenvalue
+  Laguerre<N> search[G];
+  int count = 0;
+  unsigned open = 0;
+  for (int g = 0; g < G; ++g) {
+    search[g].start(groups[g].o.d, groups[g].o.squares, groups[g].bound(), groups[g].pairs.wanted[0]);
+    open |= search[g].open;
+    count = groups[g].pairs.count > count ? groups[g].pairs.count : count;
+  }
+  for (int iteration = 0; iteration < kSteps * count + 4 && open != 0; ++iteration) {
+    open = 0;
+#pragma GCC unroll 2
+    for (int g = 0; g < G; ++g) {
+      search[g].step(groups[g].o.d, groups[g].o.squares, groups[g].o.norm, groups[g].o.negative);
+      open |= search[g].open;
     }
   }
-  unsigned any_open = 0;
-  for (int iteration = 0; iteration < 12; ++iteration) {
-    any_open = 0;
-    for (int j = 0; j < count; ++j) {
-      if (open[j] == 0) continue;
-      Characteristic f = characteristic<N>(d, squares, x[j]);
-      Real r = j + 1 - f.below;
-      Mask up = less(splat(0.5), r);
-      Real side = select(up, splat(1), splat(-1));
-      r = select(up, r, 1 - r);
-      Real step = laguerre_step<N>(f, r, side);
-      Real y = x[j] + side * step;
-      low[j] = select(up, max(y, low[j]), low[j]);
-      high[j] = select(up, high[j], min(y, high[j]));
-      // Near a simple eigenvalue the error after a step is about step * (step/last)^3. Steps that shrink slowly crawl
-      // along a cluster; the brackets' geometric mean leaves one around zero.
-      Mask simple = less(r, splat(1.5));
-      Mask done = both(simple, less_equal(step * step * step * step, 1e-15 * (last[j] * last[j] * last[j])));
-      done = either(done, less(high[j] - low[j], splat(1e-15)));
-      simple = both(simple, negate(both(less(splat(0), last[j]), less(0.3 * last[j], step))));
-      last[j] = select(simple, step, splat(0));
-      Real next = select(either(simple, done), y, -sqrt(low[j] * high[j]));
-      x[j] = select(from_bits(open[j]), next, x[j]);
-      open[j] &= ~bits(done);
-      any_open |= open[j];
+  for (int g = 0; g < G; ++g) {
+    groups[g].failed = search[g].open;
+    for (int j = 0; j < groups[g].pairs.count; ++j) {
+      const Mask good = from_bits(groups[g].pairs.wanted[j] & ~search[g].open);
+      groups[g].pairs.x[j] = select(good, search[g].lowest[j], splat(0));
     }
-    if (any_open == 0) break;
   }
-  return any_open;
 }
 
 }  // namespace

@@ -16,9 +16,9 @@ namespace {
 template <int N>
 struct LowestPairs {
   static constexpr int kMost = N / 2;
-  int count = 0;           // largest over the lanes
-  unsigned wanted[kMost];  // lanes that have pair j
-  Real x[kMost];           // zero in other lanes
+  int count = 0;                // largest over the lanes
+  unsigned wanted[kMost] = {};  // lanes that have pair j
+  Real x[kMost];                // zero in other lanes
   Real z[kMost][N];
 };
 
@@ -61,8 +61,6 @@ struct Oriented {
   Real noise;     // an eigenvalue between -noise and noise counts as zero
   Real negative;  // number of eigenvalues below -noise
   Mask flipped;
-  Real mirror;              // -1 where flipped, else 1
-  Characteristic at_noise;  // of the matrix before it was flipped, at -noise or, where flipped, at noise
 };
 
 // Returns false when no lane has a negative eigenvalue.
@@ -81,35 +79,49 @@ inline bool orient(const Tridiagonal<N>& t, Oriented<N>& o) {
     o.norm = max(o.norm, row);
   }
   o.noise = 1e-15 * o.norm + 1e-16;
-  const Characteristic below = characteristic<N>(t.d, o.squares, -o.noise);
-  const Characteristic above = characteristic<N>(t.d, o.squares, o.noise);
-  if (!any(less(splat(0.5), below.below))) return false;
-  const Real positive = N - above.below;
-  o.flipped = less(positive, below.below);
-  o.negative = min(positive, below.below);
-  o.mirror = select(o.flipped, splat(-1), splat(1));
-  o.at_noise = {select(o.flipped, above.p, below.p), select(o.flipped, above.p1, below.p1),
-                select(o.flipped, above.p2, below.p2), o.negative};
+  const Real below = eigenvalues_below<N>(t.d, o.squares, -o.noise);
+  const Real positive = N - eigenvalues_below<N>(t.d, o.squares, o.noise);
+  o.flipped = less(positive, below);
+  o.negative = min(positive, below);
+  const Real mirror = select(o.flipped, splat(-1), splat(1));
 #pragma GCC unroll 12
   for (int i = 0; i < N; ++i) {
-    o.d[i] = o.mirror * t.d[i];
-    if (i < N - 1) o.e[i] = o.mirror * o.e[i];
+    o.d[i] = mirror * t.d[i];
+    if (i < N - 1) o.e[i] = mirror * o.e[i];
   }
-  return true;
+  return any(less(splat(0.5), below));
 }
 
-// Returns the lanes in which the pairs are not accurate. Orthonormal vectors with small residuals whose number is that
-// of the negative eigenvalues are all there are.
+// A group of matrices, one per lane, that is projected.
 template <int N>
-inline unsigned find_lowest_pairs(const Oriented<N>& o, LowestPairs<N>& pairs) {
-  unsigned open[LowestPairs<N>::kMost];
+struct ProjectionGroup {
+  double* packed;
+  unsigned lanes;
+
+  Tridiagonal<N> t;
+  Oriented<N> o;
+  LowestPairs<N> pairs;
+  Mask chosen;      // lanes that are asked for and finite
+  Real largest;     // entry of A; t is A/largest
+  unsigned failed;  // lanes whose pairs are not accurate
+
+  Real bound() const { return 1.01 * o.norm + 1e-3; }  // above all eigenvalues of o and -o
+};
+
+template <int N>
+inline void want_pairs(ProjectionGroup<N>& g) {
   for (int j = 0; j < LowestPairs<N>::kMost; ++j) {
-    open[j] = pairs.wanted[j] = bits(less(splat(j + 0.5), o.negative));
-    if (open[j]) pairs.count = j + 1;
+    g.pairs.wanted[j] = bits(less(splat(j + 0.5), g.o.negative));
+    if (g.pairs.wanted[j]) g.pairs.count = j + 1;
   }
-  const Real bound = -1.01 * o.norm - 1e-3;
-  unsigned failed = lowest_eigenvalues<N>(o.d, o.squares, bound, -o.noise, o.at_noise, o.mirror, o.negative,
-                                          pairs.count, open, pairs.x);
+}
+
+// From the eigenvalues in pairs.x to pairs. Orthonormal vectors with small residuals whose number is that of the
+// negative eigenvalues are all there are.
+template <int N>
+inline void find_vectors(ProjectionGroup<N>& g) {
+  const Oriented<N>& o = g.o;
+  LowestPairs<N>& pairs = g.pairs;
   for (int attempt = 0; attempt < 3; ++attempt) {
     unsigned inaccurate = 0;
     for (int j = 0; j < pairs.count; ++j) {
@@ -117,12 +129,12 @@ inline unsigned find_lowest_pairs(const Oriented<N>& o, LowestPairs<N>& pairs) {
       const Mask wanted = from_bits(pairs.wanted[j]);
       inaccurate |= pairs.wanted[j] & ~bits(less(t.residual, 8e-16 * o.norm));
       pairs.x[j] = select(wanted, pairs.x[j] + t.correction, splat(0));
-      failed |= pairs.wanted[j] & ~bits(less(pairs.x[j], o.noise));
+      g.failed |= pairs.wanted[j] & ~bits(less(pairs.x[j], -0.5 * o.noise));
     }
-    if ((inaccurate & ~failed) == 0) break;
-    if (attempt == 2) failed |= inaccurate;
+    if ((inaccurate & ~g.failed) == 0) break;
+    if (attempt == 2) g.failed |= inaccurate;
   }
-  return failed | orthonormalise(pairs);
+  g.failed |= orthonormalise(pairs);
 }
 
 // packed += weight z z'.
@@ -139,6 +151,20 @@ inline void add_outer(double* packed, Real weight, const Real* z) {
   }
 }
 
+// packed += v y y' + w z z'.
+template <int N>
+inline void add_outer(double* packed, Real v, const Real* y, Real w, const Real* z) {
+#pragma GCC unroll 12
+  for (int i = 0; i < N; ++i) {
+    const Real vy = v * y[i], wz = w * z[i];
+#pragma GCC unroll 12
+    for (int j = 0; j <= i; ++j) {
+      double* entry = packed + (i * (i + 1) / 2 + j) * kWidth;
+      store(entry, load(entry) + vy * y[j] + wz * z[j]);
+    }
+  }
+}
+
 // Adds factor times |x| z z' over the negative eigenvalues x of T in the chosen lanes.
 template <int N>
 void project_by_ql(double* packed, const Tridiagonal<N>& t, Real norm, Mask chosen, Real factor) {
@@ -147,7 +173,7 @@ void project_by_ql(double* packed, const Tridiagonal<N>& t, Real norm, Mask chos
     d[c] = t.d[c];
     e[c] = t.e[c];
     for (int r = 0; r < N; ++r) z[c][r] = splat(r == c);
-    apply_reflections(t, z[c]);
+    apply_reflections(t, z + c, 1);
   }
   ql_iterate<N>(d, e, norm, z);
   for (int c = 0; c < N; ++c) {
@@ -167,44 +193,69 @@ void project_by_pairs(double* packed, const Tridiagonal<N>& t, Negative mode, Ma
       store(packed + i * kWidth, select(flipped, rest * a, a));
     }
   }
+  Real weight[LowestPairs<N>::kMost];
   for (int j = 0; j < pairs.count; ++j) {
-    Real* z = pairs.z[j];
     // A vector that was rejected may hold NaN.
     const Mask used = both(chosen, from_bits(pairs.wanted[j]));
 #pragma GCC unroll 12
-    for (int k = 0; k < N; ++k) z[k] = select(used, z[k], splat(0));
-    apply_reflections(t, z);
-    add_outer<N>(packed, max(-pairs.x[j], splat(0)) * factor, z);
+    for (int k = 0; k < N; ++k) pairs.z[j][k] = select(used, pairs.z[j][k], splat(0));
+    weight[j] = max(-pairs.x[j], splat(0)) * factor;
   }
+  apply_reflections(t, pairs.z, pairs.count);
+  int j = 0;
+  for (; j + 1 < pairs.count; j += 2) add_outer<N>(packed, weight[j], pairs.z[j], weight[j + 1], pairs.z[j + 1]);
+  if (j < pairs.count) add_outer<N>(packed, weight[j], pairs.z[j]);
 }
 
+// Returns false when no lane has a negative eigenvalue.
 template <int N>
-void project_by_tridiagonal(double* packed, Negative mode, unsigned lanes) {
+bool reduce(ProjectionGroup<N>& g) {
   constexpr int kEntries = N * (N + 1) / 2;
-  Tridiagonal<N> t;
   Real largest = splat(0), sum = splat(0);
 #pragma GCC unroll 78
   for (int i = 0; i < kEntries; ++i) {
-    Real a = abs(load(packed + i * kWidth));
+    Real a = abs(load(g.packed + i * kWidth));
     largest = max(a, largest);
     sum += a;
   }
   // A NaN or an infinity makes the sum one.
-  Mask chosen = both(from_bits(lanes), less(sum, splat(__builtin_inf())));
-  largest = select(chosen, max(largest, splat(1e-290)), splat(1));
-  Real scale = 1 / largest;
+  g.chosen = both(from_bits(g.lanes), less(sum, splat(__builtin_inf())));
+  g.largest = select(g.chosen, max(largest, splat(1e-290)), splat(1));
+  const Real scale = 1 / g.largest;
 #pragma GCC unroll 78
-  for (int i = 0; i < kEntries; ++i) t.u[i] = select(chosen, load(packed + i * kWidth) * scale, splat(0));
-  tridiagonalise(t);
+  for (int i = 0; i < kEntries; ++i) {
+    g.t.u[i] = select(g.chosen, load(g.packed + i * kWidth) * scale, splat(0));
+  }
+  tridiagonalise(g.t);
+  if (!orient(g.t, g.o)) return false;
+  want_pairs(g);
+  return true;
+}
 
-  Oriented<N> o;
-  if (!orient(t, o)) return;
-  LowestPairs<N> pairs;
-  const unsigned failed = find_lowest_pairs(o, pairs);
-  const Real factor = largest * (mode == Negative::clamp ? 1.0 : 2.0);
-  project_by_pairs<N>(packed, t, mode, both(chosen, from_bits(~failed)), o.flipped, factor, pairs);
-  const Mask rest = both(chosen, from_bits(failed));
-  if (any(rest)) project_by_ql<N>(packed, t, o.norm, rest, factor);
+template <int N>
+void add_pairs(ProjectionGroup<N>& g, Negative mode) {
+  find_vectors(g);
+  const Real factor = g.largest * (mode == Negative::clamp ? 1.0 : 2.0);
+  project_by_pairs<N>(g.packed, g.t, mode, both(g.chosen, from_bits(~g.failed)), g.o.flipped, factor, g.pairs);
+  const Mask rest = both(g.chosen, from_bits(g.failed));
+  if (any(rest)) project_by_ql<N>(g.packed, g.t, g.o.norm, rest, factor);
+}
+
+template <int N>
+void project_lanes(double* first, unsigned first_lanes, double* second, unsigned second_lanes, Negative mode) {
+  if constexpr (N <= 3) {
+    project_lanes<N>(first, mode, first_lanes);
+    project_lanes<N>(second, mode, second_lanes);
+  } else {
+    ProjectionGroup<N> groups[2];
+    groups[0].packed = first, groups[0].lanes = first_lanes;
+    groups[1].packed = second, groups[1].lanes = second_lanes;
+    const bool negative[2] = {reduce(groups[0]), reduce(groups[1])};
+    lowest_eigenvalues<N, 2>(groups);
+    for (int g = 0; g < 2; ++g) {
+      if (negative[g]) add_pairs(groups[g], mode);
+    }
+  }
 }
 
 template <int N>
@@ -216,7 +267,11 @@ void project_lanes(double* packed, Negative mode, unsigned lanes) {
   } else if constexpr (N == 3) {
     project_3(packed, mode == Negative::absolute, lanes);
   } else {
-    project_by_tridiagonal<N>(packed, mode, lanes);
+    ProjectionGroup<N> group;
+    group.packed = packed, group.lanes = lanes;
+    if (!reduce(group)) return;
+    lowest_eigenvalues<N, 1>(&group);
+    add_pairs(group, mode);
   }
 }
 

@@ -15,6 +15,11 @@ void project(double* packed, bool absolute, unsigned lanes) {
   project_lanes<N>(packed, absolute ? Negative::absolute : Negative::clamp, lanes);
 }
 
+template <int N>
+void project_two(double* first, unsigned first_lanes, double* second, unsigned second_lanes, bool absolute) {
+  project_lanes<N>(first, first_lanes, second, second_lanes, absolute ? Negative::absolute : Negative::clamp);
+}
+
 Vector load_vector(const double* p) { return {load(p), load(p + kWidth), load(p + 2 * kWidth)}; }
 
 void store_vector(double* p, const Vector& a) {
@@ -65,6 +70,7 @@ void fill(ProjectionTable& table) {
   table.definite_tolerance[N] = definite_tolerance(N);
   table.definite[N] = definite<N>;
   table.project[N] = project<N>;
+  table.project_two[N] = project_two<N>;
   if constexpr (N > 1) fill<N - 1>(table);
 }
 

@@ -10,6 +10,8 @@ struct ProjectionTable {
   double definite_tolerance[kLargest + 1] = {};
   unsigned (*definite[kLargest + 1])(const double* packed) = {};
   void (*project[kLargest + 1])(double* packed, bool absolute, unsigned lanes) = {};
+  void (*project_two[kLargest + 1])(double* first, unsigned first_lanes, double* second, unsigned second_lanes,
+                                    bool absolute) = {};
   // F, U, V column by column: f[9][lanes] -> u[9][lanes], s[3][lanes], v[9][lanes]; see svd3 in runtime/lanes/svd3.h.
   void (*svd3)(const double* f, double* u, double* s, double* v) = nullptr;
   // Indexed by the columns of F: F[3*columns] and singular values s[columns] by the decomposition in use.

@@ -65,15 +65,17 @@ inline void tridiagonalise(Tridiagonal<N>& t) {
   for (int i = 0; i < N; ++i) t.d[i] = t.u[i * (i + 3) / 2];
 }
 
-// y -> Q y, from reflection i on.
+// y -> Q y for each of `count` vectors, from reflection i on.
 template <int N, int i = 2>
-inline void apply_reflections(const Tridiagonal<N>& t, Real* y) {
+inline void apply_reflections(const Tridiagonal<N>& t, Real (*y)[N], int count) {
   if constexpr (i < N) {
     const Real* u = t.u + i * (i + 1) / 2;
-    const Real s = dot<i>(u, y) * t.scale[i];
+    for (int k = 0; k < count; ++k) {
+      const Real s = dot<i>(u, y[k]) * t.scale[i];
 #pragma GCC unroll 12
-    for (int j = 0; j < i; ++j) y[j] -= s * u[j];
-    apply_reflections<N, i + 1>(t, y);
+      for (int j = 0; j < i; ++j) y[k][j] -= s * u[j];
+    }
+    apply_reflections<N, i + 1>(t, y, count);
   }
 }
 

@@ -148,6 +148,15 @@ std::vector<Family> families() {
          for (int i = 0; i + 1 < n; ++i) h(i, i + 1) = h(i + 1, i) = 1;
          return h;
        }},
+      // A function of one scalar of a stencil: one large eigenvalue, pairs of both signs decades apart, zeros.
+      {"stencil",
+       [](Random& r, int n) {
+         const double decade = r.uniform(-3, -1);
+         return r.with_spectrum(spectrum(n, [&](int i) {
+           if (i == 0) return 1.0;
+           return i > 8 ? 0.0 : (i % 2 == 0 ? -1 : 1) * std::pow(10.0, decade * (1 + i / 5)) * r.uniform(0.8, 1);
+         }));
+       }},
       {"entries of one", [=](Random& r, int n) { return Eigen::MatrixXd(sign(r) * Eigen::MatrixXd::Ones(n, n)); }},
   };
 }
@@ -207,7 +216,21 @@ TEST_P(ProjectionTest, AgreesWithEigenDecomposition) {
                         (absolute ? ", absolute" : ", clamp"));
         pack(before.back(), lanes, lane, packed.data());
       }
-      table.project[n](packed.data(), absolute, (1u << lanes) - 1);
+      const unsigned every = (1u << lanes) - 1;
+      const Packed given = packed;
+      Packed first = packed, second = packed;
+      table.project[n](packed.data(), absolute, every);
+      // Two vectors at a time, one of them with half its lanes.
+      table.project_two[n](first.data(), every, second.data(), every & 0x55u, absolute);
+      for (int lane = 0; lane < lanes; ++lane) {
+        const Eigen::MatrixXd once = unpack(packed.data(), n, lanes, lane);
+        ASSERT_LE((unpack(first.data(), n, lanes, lane) - once).norm(), 1e-14 * once.norm()) << names[lane];
+        const bool asked = lane % 2 == 0;
+        ASSERT_LE(
+            (unpack(second.data(), n, lanes, lane) - (asked ? once : unpack(given.data(), n, lanes, lane))).norm(),
+            asked ? 1e-14 * once.norm() : 0)
+            << names[lane];
+      }
       for (int lane = 0; lane < lanes; ++lane) {
         expect_projected(before[lane], unpack(packed.data(), n, lanes, lane), absolute, names[lane]);
         if (HasFatalFailure()) return;
