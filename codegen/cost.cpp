@@ -69,6 +69,13 @@ std::vector<EntryCost> cost_of_entries(const Schedule& s) {
       counter.count("value", join(value, s.require), true, true, 2),  // and the smallest margin
       counter.count("gradient", gradient, true, true, size(gradient)),
       counter.count("hessian", hessian, true, true, size(hessian))};
+  if (s.near >= 0) {
+    const Roots far_value = {s.far_value}, far_gradient = join(far_value, s.far_gradient),
+                far_hessian = join(far_gradient, s.far_hessian);
+    entries.push_back(counter.count("value, far", join(far_value, s.require), true, true, 2));
+    entries.push_back(counter.count("gradient, far", far_gradient, true, true, size(far_gradient)));
+    entries.push_back(counter.count("hessian, far", far_hessian, true, true, size(far_hessian)));
+  }
   if (!s.principal.empty()) entries.push_back(counter.count("principal", s.principal, true, true, size(s.principal)));
   return entries;
 }

@@ -22,7 +22,8 @@ struct EntryCost {
   int bytes_out = 0;
 };
 
-// In the order above; "principal" only for an isotropic density.
+// In the order above; "principal" only for an isotropic density, and before it "value, far", "gradient, far" and
+// "hessian, far" where lanes far from rest have a form of their own (codegen/rest_form.h).
 std::vector<EntryCost> cost_of_entries(const Schedule& schedule);
 
 // One line per entry point under a line of titles, each line beginning with `margin`.

@@ -138,19 +138,13 @@ std::string kernel_table(const Module& m, const OperationCounts& c, int lanes) {
   return out;
 }
 
-std::string header(const Module& m, const OperationCounts (&counts)[2], const std::vector<EntryCost>& costs) {
-  const OperationCounts &c = counts[0], &far = counts[1];
-  std::string two_forms;
-  if (m.near >= 0)
-    two_forms =
-        fmt::format("// These are near rest (margin `near` above 0); elsewhere value {}, gradient {}, Hessian {}.\n",
-                    far.value, far.gradient, far.hessian);
+std::string header(const Module& m, const OperationCounts& c, const std::vector<EntryCost>& costs) {
   return fmt::format(
              "// {}{}: kernel made by Ergon from the energy below.\n"
-             "// Cost per lane, as `ergon cost` tells it:\n{}{}"
-             "// Kept: {} values per material, {} per element. q: {} components.\n//\n",
-             m.energy->name, m.case_name.empty() ? "" : ", case " + m.case_name, cost_table(costs, "//   "), two_forms,
-             c.uniforms, c.elements, m.q_size()) +
+             "// Cost per lane, as `ergon cost` tells it:\n{}"
+             "// Kept: {} values per material, {} per element. q: {} components{}.\n//\n",
+             m.energy->name, m.case_name.empty() ? "" : ", case " + m.case_name, cost_table(costs, "//   "), c.uniforms,
+             c.elements, m.q_size(), m.displacement ? ", those of F - I" : "") +
          commented(m.energy->text) + "\n";
 }
 
@@ -210,7 +204,7 @@ Emitted emit(const Module& m, const Schedule& s, int lanes) {
   counts[0].principal = static_cast<int>(principal_text.instructions.size());
   out.counts = counts[0];
   out.costs = cost_of_entries(s);
-  out.source = header(m, counts, out.costs) + prelude(lanes, used) + kKernelAbiText + "\n";
+  out.source = header(m, out.counts, out.costs) + prelude(lanes, used) + kKernelAbiText + "\n";
   out.source += fmt::format(
       "static void prepare_uniforms(const double* params, double* u) {{\n  (void)params, (void)u;\n{}}}\n\n",
       uniforms.body);

@@ -1,7 +1,9 @@
 #include "codegen/rest_form.h"
 
 #include <algorithm>
+#include <exception>
 
+#include "codegen/cancellations.h"
 #include "codegen/lower.h"
 #include "codegen/rest_algebra.h"
 #include "symbolic/elaborate.h"
@@ -22,8 +24,9 @@ struct AtRest {
   bool no_value = false, no_slope = false;
 };
 
-// Decides by exact algebra, for parameters that remain symbols.
-AtRest exactly_at_rest(const Energy& energy, const std::string& case_name) {
+// Decides by exact algebra, for parameters that remain symbols; what that cannot decide, a comparison of parameters or
+// a pole, counts as not at rest.
+AtRest exactly_at_rest(const Energy& energy, const std::string& case_name) try {
   ExactInputs inputs;
   for (const Symbol* dof : energy.with_role(Role::dof)) inputs[dof->name] = undeformed(dof->shape);
   GinacAlgebra numbers(std::move(inputs));
@@ -31,24 +34,25 @@ AtRest exactly_at_rest(const Energy& energy, const std::string& case_name) {
   const Jet<GiNaC::ex> at = elaborate(energy, case_name, jets).value;
   auto zero = [](const GiNaC::ex& e) { return e.is_zero() || e.normal().is_zero(); };
   return {zero(at.value), std::all_of(at.gradient.begin(), at.gradient.end(), zero)};
+} catch (const std::exception&) {
+  return {};
 }
 
-}  // namespace
-
-void rest_form(Module& module) {
+// Whether the module was replaced by its expansion about rest.
+bool expand_about_rest(Module& module) {
   const Energy& energy = *module.energy;
-  if (energy.kind != Energy::Kind::density || energy.geometry != "solid") return;
+  if (energy.kind != Energy::Kind::density || energy.geometry != "solid") return false;
   Module made = empty_module(energy, module.case_name);
   made.displacement = true;
   RestAlgebra algebra(made);
   const Elaborated<int> parts = elaborate(energy, module.case_name, algebra);
-  if (!algebra.expands(parts.value)) return;
+  if (!algebra.expands(parts.value)) return false;
 
   Graph& g = made.graph;
   const NodeId at_rest = algebra.at_rest(parts.value);
   AtRest rest{g.is_constant(at_rest, 0), constant_zero(g, algebra.slope_at_rest(parts.value))};
   if (!rest.no_value || !rest.no_slope) rest = exactly_at_rest(energy, module.case_name);
-  if (!rest.no_slope) return;
+  if (!rest.no_slope) return false;
   const NodeId remainder = algebra.remainder(parts.value);
   made.value = rest.no_value ? remainder : g.add(at_rest, remainder);
   for (const int margin : parts.active) made.active.push_back(algebra.direct(margin));
@@ -61,6 +65,13 @@ void rest_form(Module& module) {
   }
   flatten(made);
   module = std::move(made);
+  return true;
+}
+
+}  // namespace
+
+void rest_form(Module& module) {
+  if (!expand_about_rest(module)) remove_cancellations(module);
 }
 
 }  // namespace ergon

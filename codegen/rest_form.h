@@ -4,8 +4,8 @@
 // Establishes, for the density of a solid whose value and stress vanish at rest F = I as an identity in its parameters:
 // q is the displacement gradient G = F - I (`displacement`), and the value is its own remainder of second order in G
 // (codegen/rest_algebra.h). Sums and products of it hold at every G; with functions and quotients the value so written
-// serves states where `near` > 0, |G|^2 < 1/16, and `far` holds it as its author wrote it. All other energies are left
-// as they are.
+// serves states where `near` > 0, |G|^2 < 1/16, and `far` holds it as its author wrote it. In all other energies only
+// single sums are rewritten (codegen/cancellations.h).
 
 #include "codegen/module.h"
 
