@@ -50,6 +50,7 @@ class Analysis {
     const auto& functions = function_names();
     if (std::find(functions.begin(), functions.end(), name) != functions.end())
       throw SourceError(place, fmt::format("'{}' is the name of a function; choose another", name));
+    if (name == "pi") throw SourceError(place, "'pi' is the number 3.14159...; choose another name");
     const auto [known, fresh] = declared_.emplace(name, place);
     if (fresh) return;
     const bool header = energy_.kind == Energy::Kind::density && name == "F";
@@ -116,7 +117,7 @@ class Analysis {
   }
 
   void names(const Expression& e, const Quantities& known) {
-    if (e.kind == Kind::name) {
+    if (e.kind == Kind::name && e.text != "pi") {
       used_.insert(e.text);
       if (!known.contains(e.text)) unknown(e, known);
     }

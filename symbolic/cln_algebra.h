@@ -41,6 +41,7 @@ class ClnAlgebra {
       : inputs_(inputs), format_(cln::float_format(static_cast<uintptr_t>(digits))) {}
 
   Scalar number(const std::string& decimal) const;
+  Scalar pi() const { return {cln::pi(format_)}; }
   Scalar add(const Scalar& a, const Scalar& b) const;
   Scalar subtract(const Scalar& a, const Scalar& b) const;
   Scalar multiply(const Scalar& a, const Scalar& b) const;

@@ -157,7 +157,7 @@ class DeclarationReader {
       ++at_;
     }
     if (at_ < text_.size() && text_[at_] != ' ' && text_[at_] != '\t')
-      fail(at_, fmt::format("expected a blank after the name '{}', found '{}'", symbol.name, text_[at_]));
+      fail(at_, fmt::format("expected a blank after the name '{}', found '{}'", symbol.name, character(text_, at_)));
     skip_blanks();
     if (first_end_ == 0) {
       start_ = start;

@@ -5,6 +5,7 @@
 // An algebra A supplies
 //   using Scalar = ...;                              copyable
 //   Scalar number(const std::string& decimal);       an exact literal: "2", "0.5", "1e-24"
+//   Scalar pi();                                     optional: where a double's digits are not enough
 //   Scalar add(a, b), subtract(a, b), multiply(a, b), divide(a, b), negate(a);
 //   Scalar power(a, long num, long den);             constant rational exponent in lowest terms, den > 0
 //   Scalar power(a, b);                              any other exponent

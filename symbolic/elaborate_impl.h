@@ -53,6 +53,11 @@ class Elaborator {
  private:
   using Kind = Expression::Kind;
 
+  S pi() {
+    if constexpr (requires { a_.pi(); }) return a_.pi();
+    return a_.number("3.14159265358979323846");  // more digits than a double holds
+  }
+
   S margin(const Condition& c) {
     const S left = scalar(*c.left);
     const S right = scalar(*c.right);
@@ -77,7 +82,7 @@ class Elaborator {
       case Kind::number:
         return op_.scalar(a_.number(e.text));
       case Kind::name:
-        return names_.at(e.text);
+        return e.text == "pi" ? op_.scalar(pi()) : names_.at(e.text);
       case Kind::negate:
         return op_.negate(tensor(*e.arguments[0]));
       case Kind::power:

@@ -22,6 +22,7 @@ class GinacAlgebra {
   explicit GinacAlgebra(ExactInputs values = {}) : values_(std::move(values)) {}
 
   Scalar number(const std::string& decimal) const { return GiNaC::numeric(exact_decimal(decimal)); }
+  Scalar pi() const { return GiNaC::Pi; }
   Scalar add(const Scalar& a, const Scalar& b) const { return a + b; }
   Scalar subtract(const Scalar& a, const Scalar& b) const { return a - b; }
   Scalar multiply(const Scalar& a, const Scalar& b) const { return a * b; }

@@ -43,6 +43,9 @@ class JetAlgebra {
 
   Scalar number(const std::string& decimal) { return {b_.number(decimal), {}, {}}; }
 
+  Scalar pi() requires requires(B& b) { b.pi(); }
+  { return {b_.pi(), {}, {}}; }
+
   Scalar input(const Symbol& symbol, int component) {
     Scalar r{b_.input(symbol, component), {}, {}};
     if (!varies(symbol)) return r;

@@ -10,8 +10,9 @@ namespace {
 
 using Kind = Expression::Kind;
 
-const std::vector<std::string> greek = {"alpha", "beta", "gamma", "delta", "epsilon", "eta", "theta", "kappa", "lambda",
-                                        "mu",    "nu",   "xi",    "rho",   "sigma",   "tau", "phi",   "psi",   "omega"};
+const std::vector<std::string> greek = {"alpha", "beta",   "gamma", "delta", "epsilon", "eta", "theta",
+                                        "kappa", "lambda", "mu",    "nu",    "xi",      "rho", "pi",
+                                        "sigma", "tau",    "phi",   "psi",   "omega"};
 
 std::string escaped(const std::string& name) {
   std::string text;

@@ -15,7 +15,7 @@ struct Statement {
   std::string text;
   std::vector<std::pair<size_t, Place>> lines;  // offset in `text` where each source line starts, and its place
 
-  Place place(size_t offset = 0) const;
+  Place place(size_t offset = 0) const;  // columns count characters of UTF-8, offsets bytes
 };
 
 struct Statements {

@@ -40,14 +40,13 @@ size_t end_of_number(const Statement& statement, size_t start) {
   return at;
 }
 
-// The bytes of the UTF-8 character at `at`.
+}  // namespace
+
 std::string character(std::string_view text, size_t at) {
   size_t end = at + 1;
   while (end < text.size() && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) ++end;
   return std::string(text.substr(at, end - at));
 }
-
-}  // namespace
 
 size_t end_of_name(std::string_view text, size_t offset) {
   if (offset >= text.size() || !is_letter(text[offset])) return offset;

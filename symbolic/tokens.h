@@ -23,6 +23,9 @@ std::string to_string(const Token& token);
 // expression has.
 std::vector<Token> tokenise(const Statement& statement, size_t offset);
 
+// The bytes of the UTF-8 character at `at`.
+std::string character(std::string_view text, size_t at);
+
 // The end of the identifier that starts at `offset`, or `offset` when none does.
 size_t end_of_name(std::string_view text, size_t offset);
 

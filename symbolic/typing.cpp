@@ -52,7 +52,7 @@ class Typing {
       case Kind::number:
         return number(e);
       case Kind::name:
-        return names_.at(e.text);
+        return e.text == "pi" ? Quantity{} : names_.at(e.text);
       case Kind::negate:
         return argument(e, 0);
       case Kind::add:

@@ -201,5 +201,42 @@ TEST(EnergyFiles, WindowsLineEndsChangeNothing) {
   }
 }
 
+TEST(Parser, ColumnsCountCharacters) {
+  auto message = [](const std::string& text) -> std::string {
+    try {
+      parse_energy(text, "e.energy");
+    } catch (const SourceError& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  const std::string head = "energy e point\ndof x m\nparam k N/m (0, inf) ";
+  EXPECT_EQ(message(head + "Steifigkeit in \xC3\xA4\xC3\xB6\xC3\xBC\nvalue k*norm2(y)\n"),
+            "e.energy:4:15: unknown name 'y'; known here are k, x");
+  EXPECT_EQ(message(head + "\nvalue \xC3\xA4 + k*norm2(y)\n"),
+            "e.energy:4:7: found '\xC3\xA4', which has no meaning in an expression");
+  EXPECT_EQ(message(head + "\nparam m\xC3\xBC 1\nvalue k*norm2(x)\n"),
+            "e.energy:4:8: expected a blank after the name 'm', found '\xC3\xBC'");
+  // Behind characters of two and three bytes in the same statement.
+  EXPECT_EQ(message("energy e point\ncite \xC3\xA9\xE2\x82\xAC\ndof x \xC3\xA9 m\nvalue 0\n").substr(0, 14),
+            "e.energy:3:7: ");
+  const Statements split = split_statements("let \xC3\xA9\xE2\x82\xAC= x", "e.energy");
+  EXPECT_EQ(split.all[0].place(4).column, 5);
+  EXPECT_EQ(split.all[0].place(6).column, 6);
+  EXPECT_EQ(split.all[0].place(9).column, 7);
+}
+
+TEST(Parser, PiIsAPureNumberThatNobodyElseNames) {
+  const Energy e = parse_energy("energy e point\ndof x m\nparam k N/m\nvalue pi*k*norm2(x)*2^pi\n", "e.energy");
+  EXPECT_EQ(to_text(*e.value), "pi*k*norm2(x)*2^pi");
+  EXPECT_EQ(to_latex(*e.value->arguments[0]->arguments[0]), "\\pi \\, k");
+  try {
+    parse_energy("energy e point\ndof x m\nparam pi N/m\nvalue pi*norm2(x)\n", "e.energy");
+    FAIL() << "no error";
+  } catch (const SourceError& error) {
+    EXPECT_STREQ(error.what(), "e.energy:3:7: 'pi' is the number 3.14159...; choose another name");
+  }
+}
+
 }  // namespace
 }  // namespace ergon

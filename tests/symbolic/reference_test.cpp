@@ -224,5 +224,15 @@ TEST(Reference, HingeAngleDifferences) {
   }
 }
 
+// sin(pi/6) = 1/2 and cos(pi) = -1, to more digits than a double holds.
+TEST(Reference, PiHasAllDigits) {
+  const Energy e = parse_energy(
+      "energy e point\ndof x m\nparam k J\nvalue k*((sin(pi/6) - 1/2) + (cos(pi) + 1) + x[0]*0)*1e40\n", "e.energy");
+  EXPECT_LT(std::fabs(evaluate_reference(e, "", {{"x", {1, 0, 0}}, {"k", {1}}}).value), 1e-5);
+  const Energy area = parse_energy("energy e point\ndof x m\nparam k N/m\nvalue pi*k*norm2(x)\n", "area.energy");
+  EXPECT_EQ(evaluate_reference(area, "", {{"x", {1, 0, 0}}, {"k", {1}}}).value, M_PI);
+  EXPECT_EQ(evaluate_reference(area, "", {{"x", {1, 0, 0}}, {"k", {1}}}).gradient[0], 2 * M_PI);
+}
+
 }  // namespace
 }  // namespace ergon
