@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Checks of the source tree: format, include directions, file lengths, shell scripts, paths of one machine.
+# Checks of the source tree: format, include directions, file lengths, names of types, shell scripts, paths of one machine.
 #   --tidy   clang-tidy as well, over all translation units of the program (minutes; needs a configured build folder)
 # Prints "passed: CHECK" or "failed: CHECK" for each, what is wrong above it, and exits with 1 when one failed.
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
@@ -48,6 +48,33 @@ file_lengths() {
   awk 'FNR == 401 { printf "%s: more than 400 lines: split it by idea\n", FILENAME; bad = 1 } END { exit bad }' "${sources[@]}"
 }
 
+# Two types of one name are one to the linker: each name once in a namespace, over all files, unless it is in an
+# anonymous one. The programs of tests are linked apart, so a name may come again in another folder of tests.
+type_names() {
+  awk '
+    FNR == 1 { depth = 0 }
+    /^(inline )?namespace .*\{$/ || /^namespace \{$/ {
+      name = $0; sub(/^inline /, "", name); sub(/^namespace ?/, "", name); sub(/ ?\{$/, "", name)
+      space[++depth] = name; next
+    }
+    /^\}  \/\/ namespace/ { if (depth > 0) --depth; next }
+    /^(struct|class|union|enum|enum class|enum struct) [A-Za-z_0-9]+( final)?( ?:[^;]*)?( ?\{.*)?$/ {
+      if ($0 !~ /[{:]/ || $0 ~ /^[a-z ]+[A-Za-z_0-9]+::/) next
+      type = $0; sub(/^(enum class|enum struct|struct|class|union|enum) /, "", type); sub(/[^A-Za-z_0-9].*/, "", type)
+      key = ""; hidden = depth == 0
+      for (i = 1; i <= depth; ++i) { if (space[i] == "") hidden = 1; key = key space[i] "::" }
+      if (hidden) next
+      key = key type
+      split(FILENAME, part, "/"); program = part[1] == "tests" ? part[1] "/" part[2] : ""
+      for (n = 1; n <= count[key]; ++n) {
+        if (file[key, n] == FILENAME || (program != "" && home[key, n] != "" && home[key, n] != program)) continue
+        printf "%s:%d: %s is also the name of a type in %s:%d\n", FILENAME, FNR, key, file[key, n], line[key, n]; bad = 1
+      }
+      ++count[key]; file[key, count[key]] = FILENAME; line[key, count[key]] = FNR; home[key, count[key]] = program
+    }
+    END { exit bad }' "${sources[@]}"
+}
+
 shell_scripts() {
   local script bad=0
   while IFS= read -r script; do
@@ -73,7 +100,7 @@ tidy() {
     xargs -0 -P "$cores" -n 1 clang-tidy -p "$build" --quiet 2>/dev/null
 }
 
-checks=(format include_directions file_lengths shell_scripts host_paths)
+checks=(format include_directions file_lengths type_names shell_scripts host_paths)
 case "${1-}" in
   --tidy) checks+=(tidy) ;;
   '') ;;

@@ -32,8 +32,8 @@ TEST_F(Checks, AGoodTreePasses) {
   const Answer answer = checks();
   EXPECT_EQ(answer.code, 0) << answer.out << answer.err;
   EXPECT_EQ(answer.out,
-            "passed: format\npassed: include directions\npassed: file lengths\npassed: shell scripts\n"
-            "passed: host paths\n");
+            "passed: format\npassed: include directions\npassed: file lengths\npassed: type names\n"
+            "passed: shell scripts\npassed: host paths\n");
 }
 
 TEST_F(Checks, RuntimeKnowsNothingOfTheCompiler) {
@@ -51,6 +51,24 @@ TEST_F(Checks, CodegenSeesOfTheRuntimeOnlyTheKernelStruct) {
 TEST_F(Checks, IncludesAreWrittenFromTheRoot) {
   write("symbolic/bad.cpp", "#include \"energy.h\"\n");
   expect_found("include directions", "symbolic/bad.cpp:1: \"energy.h\" is not written from the root of the repository");
+}
+
+TEST_F(Checks, TwoTypesOfOneNameAreOneToTheLinker) {
+  const std::string type = "namespace ergon {\n\nstruct Twice {\n  int x;\n};\n\n}  // namespace ergon\n";
+  const std::string hidden =
+      "namespace ergon {\nnamespace {\n\nclass Twice {};\n\n}  // namespace\n}  // namespace ergon\n";
+  write("runtime/a.cpp", type);
+  write("symbolic/b.cpp", hidden);
+  write("symbolic/c.cpp", "namespace ergon {\n\nstruct Twice;\n\n}  // namespace ergon\n");
+  write("symbolic/d.cpp", "namespace ergon::other {\n\nstruct Twice {};\n\n}  // namespace ergon::other\n");
+  EXPECT_EQ(checks().code, 0) << checks().out;
+  write("tests/runtime/e.cpp", type);
+  expect_found("type names", "tests/runtime/e.cpp:3: ergon::Twice is also the name of a type in runtime/a.cpp:3");
+  std::filesystem::remove(folder / "runtime/a.cpp");
+  write("tests/scenes/f.cpp", type);
+  EXPECT_EQ(checks().code, 0) << checks().out;
+  write("tests/scenes/g.h", "#pragma once\nnamespace ergon {\n\nenum class Twice { a };\n\n}  // namespace ergon\n");
+  expect_found("type names", "tests/scenes/g.h:4: ergon::Twice is also the name of a type in tests/scenes/f.cpp:3");
 }
 
 TEST_F(Checks, FormatAndLengthAreKept) {
