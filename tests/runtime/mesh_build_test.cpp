@@ -4,18 +4,16 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <numeric>
 
 #include "runtime/error.h"
 #include "runtime/mesh/mesh_tools.h"
+#include "tests/runtime/mesh_helpers.h"
 
 namespace ergon {
 namespace {
 
 const Eigen::Vector3d kSize(2, 3, 0.5);
 const std::array<int, 3> kCells{3, 4, 2};
-
-double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
 // Area vectors of a closed surface add up to zero; the volume follows from the divergence theorem.
 double volume_inside(const Mesh& mesh) {

@@ -9,13 +9,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <thread>
 
 #include "runtime/error.h"
 #include "runtime/mesh/closed_surface.h"
 #include "runtime/mesh/mesh_build.h"
 #include "runtime/mesh/mesh_tools.h"
+#include "tests/runtime/mesh_helpers.h"
 
 #ifdef __SANITIZE_ADDRESS__
 // Gmsh 4.8 keeps some memory of its own when it is closed.
@@ -26,18 +26,6 @@ extern "C" const char* __lsan_default_suppressions() {
 
 namespace ergon {
 namespace {
-
-template <class Call>
-std::string message_of(Call call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
-double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
 // The surface of a box with its lowest corner at `corner`, as a mesh of its own.
 Mesh box_surface(const Eigen::Vector3d& corner, const Eigen::Vector3d& size, int cells) {

@@ -12,20 +12,11 @@
 #include "runtime/mesh/mesh_build.h"
 #include "runtime/mesh/mesh_import.h"
 #include "runtime/mesh/mesh_tools.h"
+#include "tests/runtime/mesh_helpers.h"
 #include "tests/runtime/temporary_folder.h"
 
 namespace ergon {
 namespace {
-
-template <class Call>
-std::string message_of(Call call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 // A .msh file of version 2.2 with the eight corners of a box and the given elements.
 std::string msh(const std::vector<std::string>& elements, const std::string& extra_node = "") {

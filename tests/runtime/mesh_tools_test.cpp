@@ -11,19 +11,10 @@
 
 #include "runtime/error.h"
 #include "runtime/mesh/mesh_build.h"
+#include "tests/runtime/mesh_helpers.h"
 
 namespace ergon {
 namespace {
-
-template <class Call>
-std::string message_of(Call call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 Mesh unit_tet() {
   Mesh mesh;

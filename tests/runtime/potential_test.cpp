@@ -7,6 +7,7 @@
 #include "runtime/mesh/mesh_build.h"
 #include "runtime/system.h"
 #include "tests/runtime/jet_kernels.h"
+#include "tests/runtime/mesh_helpers.h"
 
 namespace ergon {
 namespace {
@@ -14,16 +15,6 @@ namespace {
 using namespace testing;  // NOLINT
 
 const Parameters kStiff{{"mu", {3.0}}, {"lambda", {7.0}}};
-
-template <class Call>
-std::string message_of(Call call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 std::string solid_message(const Parameters& params, const Mesh& mesh = box_tets({1, 1, 1}, {1, 1, 1})) {
   return message_of([&] { Potential::on_mesh("block", kernel_of<NeoHookeanLaw>(1), mesh, 0, params); });
