@@ -1,5 +1,6 @@
 // The three evaluations of a range of blocks, for one vector width.
 
+#include "runtime/lanes/evaluate_differences.h"
 #include "runtime/lanes/evaluate_hessian.h"
 #include "runtime/lanes/evaluate_isotropic.h"
 #include "runtime/lanes/evaluate_projection.h"
@@ -121,6 +122,7 @@ void hessian_of(const Stencils& s, BlockRange range, const ChunkBlocks& blocks, 
   const bool closed_form = project && s.kernel->principal != nullptr;
   const Negative mode = projection == kProjectAbsolute ? Negative::absolute : Negative::clamp;
   ProjectionBatch<S::kSize> indefinite(mode);
+  const Differences differences = find_differences<S>(s);
   long changed = 0;
   double* element = room.scratch + static_cast<long>(batch) * s.quadrature * size;
   for (int first = range.first; first < range.last; first += batch) {
@@ -152,7 +154,11 @@ void hessian_of(const Stencils& s, BlockRange range, const ChunkBlocks& blocks, 
     packed = room.scratch;
     for (int block = first; block < last; ++block, packed += s.quadrature * size) {
       if (block + 1 < last) prefetch(s.slots + (block + 1L) * pairs * kWidth, 4L * kWidth * pairs);
-      element_matrix<S>(s, block, packed, element);
+      if (differences.apply) {
+        difference_matrix<S>(differences, packed, element);
+      } else {
+        element_matrix<S>(s, block, packed, element);
+      }
       add_element<S>(s, block, element, room.sums);
     }
   }
