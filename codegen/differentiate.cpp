@@ -1,5 +1,7 @@
 #include "codegen/differentiate.h"
 
+#include <cmath>
+#include <cstdint>
 #include <stdexcept>
 
 #include "codegen/factor.h"
@@ -68,17 +70,36 @@ NodeId partial_product(Graph& g, const std::vector<Factor>& factors, size_t k, N
   return g.product(coefficient, std::move(rest));
 }
 
-std::vector<NodeId> reverse(Graph& g, NodeId value, int q_size) {
+// The components of q that each node depends on, as bits.
+std::vector<std::uint64_t> dependences(const Graph& g, const std::vector<NodeId>& order) {
+  std::vector<std::uint64_t> depends(static_cast<size_t>(g.size()), 0);
+  for (NodeId id : order) {
+    const Node& node = g[id];
+    std::uint64_t& d = depends[static_cast<size_t>(id)];
+    if (node.kind == Node::Kind::input && node.source == Source::q) d = std::uint64_t{1} << node.index;
+    for (NodeId o : g.operands(id)) d |= depends[static_cast<size_t>(o)];
+  }
+  return depends;
+}
+
+NodeId whole(Graph& g, NodeId adjoint, NodeId of, const std::vector<std::uint64_t>& depends) {
+  int partials = 0;
+  for (NodeId o : g.operands(of)) partials += depends[static_cast<size_t>(o)] != 0;
+  const Term core = g.unscaled(adjoint);
+  if (partials < 2 || g[core.node].kind != Node::Kind::product) return adjoint;
+  return g.scale(core.coefficient, g.call(Call::keep, {core.node}));
+}
+
+// Adjoints that are products and are multiplied by several partial derivatives: split into their factors, so that sums
+// of such terms factor anew; or kept whole, so that their derivatives are formed once: at nodes through which the whole
+// value flows (a volume ratio, an angle), or at all. Which is cheapest depends on the energy.
+enum class Adjoints { split, whole_where_all_flows, whole };
+
+std::vector<NodeId> reverse(Graph& g, NodeId value, int q_size, Adjoints adjoints) {
   std::vector<NodeId> order = reachable(g, std::vector<NodeId>{value});
   std::vector<std::vector<Term>> contributions(static_cast<size_t>(g.size()));
   std::vector<NodeId> gradient(static_cast<size_t>(q_size), g.constant(0));
-  std::vector<char> depends(static_cast<size_t>(g.size()), 0);
-  for (NodeId id : order) {
-    const Node& n = g[id];
-    bool d = n.kind == Node::Kind::input && n.source == Source::q;
-    for (NodeId o : g.operands(id)) d = d || depends[static_cast<size_t>(o)];
-    depends[static_cast<size_t>(id)] = d;
-  }
+  std::vector<std::uint64_t> depends = dependences(g, order);
   contributions[static_cast<size_t>(value)].push_back({1, g.constant(1)});
   for (auto it = order.rbegin(); it != order.rend(); ++it) {
     NodeId id = *it;
@@ -86,6 +107,9 @@ std::vector<NodeId> reverse(Graph& g, NodeId value, int q_size) {
     NodeId adjoint = factored_sum(g, 0, std::move(contributions[static_cast<size_t>(id)]));
     if (g.is_constant(adjoint, 0)) continue;
     const Node n = g[id];
+    if (adjoints == Adjoints::whole || (adjoints == Adjoints::whole_where_all_flows &&
+                                        depends[static_cast<size_t>(id)] == depends[static_cast<size_t>(value)]))
+      adjoint = whole(g, adjoint, id, depends);
     auto give = [&](NodeId to, double c, NodeId node) {
       if (depends[static_cast<size_t>(to)]) contributions[static_cast<size_t>(to)].push_back({c, node});
     };
@@ -130,31 +154,67 @@ class Tangents {
   std::vector<NodeId> tangent_;
 };
 
-void derive(Graph& g, NodeId value, int n, std::vector<NodeId>& gradient, std::vector<NodeId>& hessian) {
-  gradient = reverse(g, value, n);
-  std::vector<NodeId> order = reachable(g, gradient);
-  std::vector<std::uint64_t> depends(static_cast<size_t>(g.size()), 0);
-  for (NodeId id : order) {
-    const Node& node = g[id];
-    std::uint64_t& d = depends[static_cast<size_t>(id)];
-    if (node.kind == Node::Kind::input && node.source == Source::q) d = std::uint64_t{1} << node.index;
-    for (NodeId o : g.operands(id)) d |= depends[static_cast<size_t>(o)];
-  }
-  hessian.assign(static_cast<size_t>(n * (n + 1) / 2), -1);
+struct Derivatives {
+  std::vector<NodeId> gradient, hessian;
+};
+
+Derivatives derive(Graph& g, NodeId value, int n, Adjoints adjoints) {
+  Derivatives out;
+  out.gradient = reverse(g, value, n, adjoints);
+  const std::vector<NodeId> order = reachable(g, out.gradient);
+  const std::vector<std::uint64_t> depends = dependences(g, order);
+  out.hessian.assign(static_cast<size_t>(n * (n + 1) / 2), -1);
   for (int j = 0; j < n; ++j) {
     Tangents tangents(g, order, depends, j);
     for (int i = j; i < n; ++i)
-      hessian[static_cast<size_t>(i * (i + 1) / 2 + j)] = tangents.of(gradient[static_cast<size_t>(i)]);
+      out.hessian[static_cast<size_t>(i * (i + 1) / 2 + j)] = tangents.of(out.gradient[static_cast<size_t>(i)]);
   }
+  return out;
+}
+
+// Two-operand operations of the nodes that the derivatives need, before products share parts.
+long cost(const Graph& g, const Derivatives& d) {
+  std::vector<NodeId> roots = d.gradient;
+  roots.insert(roots.end(), d.hessian.begin(), d.hessian.end());
+  long operations = 0;
+  for (NodeId id : reachable(g, roots)) {
+    const Node& n = g[id];
+    operations += static_cast<long>(n.terms.size() + n.factors.size());
+    for (const Term& t : n.terms) operations += std::abs(t.coefficient) != 1;
+    for (const Factor& f : n.factors) operations += std::abs(f.num) > 1;
+    operations -= n.kind == Node::Kind::product || (n.kind == Node::Kind::sum && n.constant == 0);
+  }
+  return operations;
+}
+
+Derivatives cheapest(Graph& g, NodeId value, int n) {
+  Graph best;
+  Derivatives out;
+  long least = -1;
+  for (const Adjoints adjoints : {Adjoints::split, Adjoints::whole_where_all_flows, Adjoints::whole}) {
+    Graph tried = g;
+    Derivatives derivatives = derive(tried, value, n, adjoints);
+    const long operations = cost(tried, derivatives);
+    if (least >= 0 && 20 * operations > 19 * least) continue;  // within 5 percent the count does not decide
+    least = operations;
+    best = std::move(tried);
+    out = std::move(derivatives);
+  }
+  g = std::move(best);
+  return out;
 }
 
 }  // namespace
 
 void differentiate(Module& module) {
   if (module.q_size() > 64) throw std::logic_error("differentiate: more than 64 components of q");
-  derive(module.graph, module.value, module.q_size(), module.gradient, module.hessian);
-  if (module.near < 0) return;
-  derive(module.graph, module.far.value, module.q_size(), module.far.gradient, module.far.hessian);
+  auto differentiate_form = [&](NodeId value, std::vector<NodeId>& gradient, std::vector<NodeId>& hessian) {
+    Derivatives d = cheapest(module.graph, value, module.q_size());
+    gradient = std::move(d.gradient);
+    hessian = std::move(d.hessian);
+  };
+  differentiate_form(module.value, module.gradient, module.hessian);
+  if (module.near >= 0) differentiate_form(module.far.value, module.far.gradient, module.far.hessian);
 }
 
 }  // namespace ergon
