@@ -17,6 +17,7 @@ namespace {
 constexpr int kChunks = 192;
 constexpr int kSmallestChunk = 64;  // stencils
 constexpr int kLargestChunk = 512;
+constexpr int kChunkPairs = 7680;  // of points of a stencil: the sums of a chunk stay in the second-level cache
 
 int size_of(const ErgonInput& input) { return input.rows * input.cols; }
 
@@ -92,7 +93,10 @@ void Potential::Impl::give_params(const Parameters& values) {
   ++param_version;
 }
 
-void Potential::Impl::cut() { chunk = std::clamp(count / kChunks, kSmallestChunk, kLargestChunk) / lanes; }
+void Potential::Impl::cut() {
+  const int largest = std::clamp(kChunkPairs / (points * (points + 1) / 2), 2 * lanes, kLargestChunk);
+  chunk = std::clamp(count / kChunks, std::min(kSmallestChunk, largest), largest) / lanes;
+}
 
 void Potential::Impl::order_vertices(const std::vector<int>& given) {
   const auto width = static_cast<size_t>(lanes), n = static_cast<size_t>(points);
@@ -190,8 +194,11 @@ void Potential::Impl::prepare() {
 }
 
 lanes::Stencils Potential::Impl::view() const {
-  return {kernel.table,   chunk,          count,           points,          quadrature, vertices.data(),
-          weights.data(), volumes.data(), elements.data(), uniforms.data(), nullptr,    nullptr};
+  const auto or_null = [](const auto& values) { return values.empty() ? nullptr : values.data(); };
+  return {kernel.table,        chunk,           count,          points,
+          quadrature,          vertices.data(), or_null(table), or_null(axis),
+          or_null(axis_nodes), weights.data(),  volumes.data(), elements.data(),
+          uniforms.data(),     nullptr,         nullptr};
 }
 
 Potential Potential::on_stencils(std::string name, Kernel kernel, std::vector<int> stencils, const Eigen::Matrix3Xd& X,

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,11 +30,11 @@ using Parameters = std::map<std::string, std::vector<double>>;
 
 class Potential {
  public:
-  // A density on every cell of a mesh. Vertex v of the mesh is vertex first_vertex + v of the system.
-  // Throws InputError for a param that is missing, unknown or of the wrong size, an element the density cannot live on,
-  // and cells that are inverted or flat (first such cell, its volume, the mesh's name).
+  // A density on every cell of a mesh. Vertex v of the mesh is vertex first_vertex + v of the system. `exactness` of
+  // the quadrature: 0 to kMaxExactness, or the element's default. Throws InputError for a param that is missing,
+  // unknown or of the wrong size, an element the density cannot live on, and cells that check_mesh refuses.
   static Potential on_mesh(std::string name, Kernel kernel, const Mesh& mesh, int first_vertex,
-                           const Parameters& params);
+                           const Parameters& params, std::optional<int> exactness = std::nullopt);
 
   // A stencil energy: `points` vertices per stencil, one stencil after the other. `rest` holds rest data by name, one
   // value set per stencil (components adjacent): a rest vector that is named like a dof but with a capital first letter

@@ -19,10 +19,13 @@ struct Potential::Impl {
   int quadrature = 1;
   int count = 0;
 
-  std::vector<int> stencils;       // as given
-  int first_vertex = 0;            // of the system, where rest begins
-  Eigen::Matrix3Xd rest;           // rest positions of a density whose q is F - I, else empty
-  AlignedVector<int> vertices;     // [block][points][lanes]
+  std::vector<int> stencils;    // as given
+  int first_vertex = 0;         // of the system, where rest begins
+  Eigen::Matrix3Xd rest;        // rest positions of a density whose q is F - I, else empty
+  AlignedVector<int> vertices;  // [block][points][lanes]
+  AlignedVector<double> table;  // lanes::Stencils::table, empty for null
+  std::vector<double> axis;     // lanes::Stencils::axis, empty for null
+  std::vector<int> axis_nodes;
   AlignedVector<double> weights;   // lanes::Stencils::weights
   AlignedVector<double> volumes;   // [block][quadrature][lanes]
   AlignedVector<double> raw;       // [block][kernel->raw][lanes]
@@ -59,7 +62,8 @@ struct Potential::Impl {
   void bind(std::string potential_name, Kernel bound);
   void check_params(const Parameters& values) const;  // throws when one is missing
   void give_params(const Parameters& values);
-  // Lane-ordered vertices of stencils (sorted within each for a density).
+  bool ascending() const { return kernel->density != 0 && table.empty(); }  // points of each stencil
+  // Lane-ordered vertices of stencils.
   void order_vertices(const std::vector<int>& given);
   void allocate_raw();
   // Writes one value set for all stencils or one per stencil into raw.

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "runtime/error.h"
+#include "runtime/mesh/mesh_tools.h"
 #include "runtime/mesh/quadrature.h"
 #include "runtime/potential_data.h"
 
@@ -23,60 +24,54 @@ struct CellRule {
   std::vector<double> weights;
 };
 
-CellRule rule_of(Element element) {
-  const QuadratureRule rule = default_quadrature(element);
+CellRule rule_of(Element element, int exactness) {
+  const QuadratureRule rule = quadrature(element, exactness);
   CellRule cell;
   cell.weights = rule.weights;
   for (const Eigen::Vector3d& point : rule.points) cell.gradients.push_back(shape_gradients(element, point));
   return cell;
 }
 
-// Gradients of the shape functions in the cell's own orthonormal frame (nodes x dimension) and the determinant of the
-// map from the reference element. The frame of a solid is that of space; a membrane's or line's first axis is along the
-// first direction of the reference element.
-double rest_gradients(const Eigen::Matrix3Xd& nodes, const Eigen::MatrixXd& reference, Eigen::MatrixXd& gradients) {
+// The map from the reference element (dimension x dimension) in the cell's own orthonormal frame: that of space for a
+// solid; of the tangents at this point for a membrane or line, its first axis along the first of the reference element.
+Eigen::MatrixXd local_map(const Eigen::Matrix3Xd& nodes, const Eigen::MatrixXd& reference) {
   const Eigen::MatrixXd map = nodes * reference;  // 3 x dimension
   const auto d = map.cols();
-  Eigen::MatrixXd local = map;
-  if (d < 3) {
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(map);
-    local = qr.matrixQR().topRows(d).triangularView<Eigen::Upper>();
-    for (Eigen::Index i = 0; i < d; ++i) {
-      if (local(i, i) < 0) local.row(i) *= -1;
+  if (d == 3) return map;
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(map);
+  Eigen::MatrixXd local = qr.matrixQR().topRows(d).triangularView<Eigen::Upper>();
+  for (Eigen::Index i = 0; i < d; ++i) {
+    if (local(i, i) < 0) local.row(i) *= -1;
+  }
+  return local;
+}
+
+// Fills `axis` and `nodes` as lanes::Stencils wants them.
+void factor_table(Element element, std::vector<double>& axis, std::vector<int>& nodes) {
+  const std::vector<double> points = gauss_points(3).points;
+  Eigen::Matrix3d values, gradients;  // of the shape functions along an edge, by point and node
+  const int edge_nodes[] = {0, 2, 1};
+  for (int p = 0; p < 3; ++p) {
+    const Eigen::Vector3d at(points[static_cast<size_t>(p)], 0, 0);
+    for (int i = 0; i < 3; ++i) {
+      values(p, i) = shape_values(Element::edge3, at)(edge_nodes[i]);
+      gradients(p, i) = shape_gradients(Element::edge3, at)(edge_nodes[i], 0);
     }
   }
-  const double determinant = local.determinant();
-  gradients = reference * local.inverse();
-  return determinant;
-}
-
-std::string node_list(const Mesh& mesh, int cell) {
-  const auto n = static_cast<size_t>(nodes_of(mesh.element));
-  const auto first = mesh.cells.begin() + static_cast<ptrdiff_t>(static_cast<size_t>(cell) * n);
-  return fmt::format("{}", fmt::join(first, first + static_cast<ptrdiff_t>(n), " "));
-}
-
-// Throws for the cell's first point of quadrature where the map is flat or turned inside out.
-void check_cell(const Mesh& mesh, int cell, double determinant, double reference_volume, double extent) {
-  const int d = dimension_of(mesh.element);
-  const double volume = determinant * reference_volume;
-  const double flat = 1e-12 * std::pow(extent, d);
-  if (volume > flat) return;
-  const std::string file = mesh.source.empty() ? "mesh" : mesh.source;
-  const char* measure = d == 3 ? "volume" : d == 2 ? "area" : "length";
-  const std::string unit = d == 3 ? " m^3" : d == 2 ? " m^2" : " m";
-  if (!(volume < -flat)) {
-    throw InputError(fmt::format("{}: cell {} (nodes {}) is flat: its {} is {:.6g}{}; remove or repair it", file, cell,
-                                 node_list(mesh, cell), measure, volume, unit));
+  const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> between = gradients * values.inverse(), rows = values;
+  axis.assign(between.data(), between.data() + 9);
+  axis.insert(axis.end(), rows.data(), rows.data() + 9);
+  nodes.resize(27);
+  for (size_t a = 0; a < 27; ++a) {
+    const Eigen::Vector3i place = (2 * reference_nodes(element)[a]).cast<int>();
+    nodes[static_cast<size_t>(place.dot(Eigen::Vector3i(1, 3, 9)))] = static_cast<int>(a);
   }
-  throw InputError(fmt::format("{}: cell {} (nodes {}) is inverted: its {} is {:.6g}{}; swap two of its nodes", file,
-                               cell, node_list(mesh, cell), measure, volume, unit));
 }
 
 }  // namespace
 
 Potential Potential::on_mesh(std::string name, Kernel kernel, const Mesh& mesh, int first_vertex,
-                             const Parameters& params) {
+                             const Parameters& params, std::optional<int> exactness) {
   Potential potential{std::make_shared<Impl>()};
   Impl& d = *potential.impl;
   d.bind(std::move(name), std::move(kernel));
@@ -86,7 +81,8 @@ Potential Potential::on_mesh(std::string name, Kernel kernel, const Mesh& mesh, 
     d.fail(fmt::format("{} is a density of a {}; {} cells have dimension {}", d.kernel->energy, d.kernel->geometry,
                        name_of(mesh.element), dimension));
   }
-  const CellRule rule = rule_of(mesh.element);
+  const int used = exactness.value_or(default_exactness(mesh.element));
+  const CellRule rule = rule_of(mesh.element, used);
   const int n = nodes_of(mesh.element);
   d.points = n;
   d.quadrature = static_cast<int>(rule.weights.size());
@@ -99,46 +95,57 @@ Potential Potential::on_mesh(std::string name, Kernel kernel, const Mesh& mesh, 
     }
     d.stencils[i] += first_vertex;
   }
+  check_mesh(mesh, used);
   d.first_vertex = first_vertex;
   if (d.kernel->displacement) d.rest = mesh.X;
   d.check_params(params);
   d.give_params(params);
 
   d.cut();
-  const auto width = static_cast<size_t>(d.lanes), free = static_cast<size_t>(n - 1);
-  const auto vectors = static_cast<size_t>(dimension), points = static_cast<size_t>(d.quadrature);
-  const auto blocks = static_cast<size_t>(d.blocks());
-  d.weights.resize(blocks * points * vectors * free * width);
+  const bool constant = has_constant_gradients(mesh.element);
+  const auto width = static_cast<size_t>(d.lanes), vectors = static_cast<size_t>(dimension);
+  const auto points = static_cast<size_t>(d.quadrature), blocks = static_cast<size_t>(d.blocks());
+  if (!constant) {
+    for (const Eigen::MatrixXd& gradients : rule.gradients) {
+      d.table.insert(d.table.end(), gradients.data(), gradients.data() + gradients.size());
+    }
+  }
+  if (mesh.element == Element::hex27 && points == 27) factor_table(mesh.element, d.axis, d.axis_nodes);
+  const size_t columns = constant ? static_cast<size_t>(n - 1) : vectors;
+  d.weights.resize(blocks * points * vectors * columns * width);
   d.volumes.resize(blocks * points * width);
-  const double reference_volume = std::accumulate(rule.weights.begin(), rule.weights.end(), 0.0);
-  std::vector<int> sorted(d.stencils.size());
+  std::vector<int> ordered(d.stencils.size());
   std::vector<int> order(static_cast<size_t>(n));
   Eigen::Matrix3Xd nodes(3, n);
-  Eigen::MatrixXd gradients;
   for (size_t lane = 0; lane < blocks * width; ++lane) {
     const int cell = d.stencil_in(static_cast<int>(lane / width), static_cast<int>(lane % width));
     const int* vertex = d.stencils.data() + static_cast<ptrdiff_t>(cell) * n;
-    // In ascending order of vertex, as lanes::Stencils::vertices wants them.
     std::iota(order.begin(), order.end(), 0);
-    std::sort(order.begin(), order.end(), [&](int a, int b) { return vertex[a] < vertex[b]; });
+    if (constant) std::sort(order.begin(), order.end(), [&](int a, int b) { return vertex[a] < vertex[b]; });
     for (int a = 0; a < n; ++a) nodes.col(a) = mesh.X.col(vertex[a] - first_vertex);
-    const double extent = (nodes.rowwise().maxCoeff() - nodes.rowwise().minCoeff()).norm();
     for (size_t p = 0; p < points; ++p) {
-      const double determinant = rest_gradients(nodes, rule.gradients[p], gradients);
-      check_cell(mesh, cell, determinant, reference_volume, extent);
+      const Eigen::MatrixXd map = local_map(nodes, rule.gradients[p]), inverse = map.inverse();
       const size_t place = lane / width * points + p, l = lane % width;
-      d.volumes[place * width + l] = determinant * rule.weights[p];
-      for (size_t k = 0; k < vectors; ++k) {
-        for (size_t a = 0; a < free; ++a) {
-          d.weights[((place * vectors + k) * free + a) * width + l] = gradients(order[a], static_cast<Eigen::Index>(k));
+      d.volumes[place * width + l] = map.determinant() * rule.weights[p];
+      double* out = d.weights.data() + place * vectors * columns * width + l;
+      if (constant) {
+        const Eigen::MatrixXd gradients = rule.gradients[p] * inverse;
+        for (size_t k = 0; k < vectors; ++k) {
+          for (size_t a = 0; a < columns; ++a) {
+            out[(k * columns + a) * width] = gradients(order[a], static_cast<Eigen::Index>(k));
+          }
+        }
+      } else {
+        for (size_t i = 0; i < vectors * vectors; ++i) {
+          out[i * width] = inverse(static_cast<Eigen::Index>(i / vectors), static_cast<Eigen::Index>(i % vectors));
         }
       }
     }
     for (int a = 0; a < n; ++a) {
-      sorted[static_cast<size_t>(cell * n + a)] = vertex[order[static_cast<size_t>(a)]];
+      ordered[static_cast<size_t>(cell * n + a)] = vertex[order[static_cast<size_t>(a)]];
     }
   }
-  d.order_vertices(sorted);
+  d.order_vertices(ordered);
   d.allocate_raw();
   d.give_rest(mesh.X, {});
   return potential;

@@ -67,7 +67,7 @@ bool SystemTerm::find_slots(const BlockMatrix& pattern, const std::vector<int>& 
   const auto n = static_cast<size_t>(d.points), width = static_cast<size_t>(d.lanes), pairs = n * (n + 1) / 2;
   const auto vectors = static_cast<size_t>(d.blocks());
   slots.resize(vectors * pairs * width);
-  turned.assign(d.kernel->density ? 0 : vectors * pairs, 0);
+  turned.assign(d.ascending() ? 0 : vectors * pairs, 0);
   struct Found {
     int index, offset, stride;
   };

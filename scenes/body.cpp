@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <filesystem>
+#include <tuple>
 
 #include "runtime/error.h"
 #include "runtime/mesh/mesh_build.h"
@@ -29,14 +30,19 @@ Transform placing(const SceneObject& object) {
   return {object.scale, rotation.axis(), rotation.angle(), vector(object.translate)};
 }
 
-Mesh box_mesh(const SceneObject& object) {
+double section_of(const SceneObject& object, int dimension) {
+  return dimension == 2 ? object.thickness : dimension == 1 ? object.cross_section : 1;
+}
+
+Mesh made_box(const SceneObject& object) {
   const BoxSource& box = *object.box;
-  const double tets = object.element == "hex8" ? 1 : 6;
-  const double cells = tets * box.cells[0] * box.cells[1] * box.cells[2];
+  const Element element = element_named(object.element);
+  double cells = elements_per_brick(element);
+  for (int axis = 0; axis < dimension_of(element); ++axis) cells *= box.cells[static_cast<size_t>(axis)];
   if (cells > most_cells)
     throw SourceError(box.at("cells"),
                       fmt::format("this makes {:.3g} cells; at most {:.3g} fit into one object", cells, most_cells));
-  return object.element == "hex8" ? box_hexes(vector(box.size), box.cells) : box_tets(vector(box.size), box.cells);
+  return ergon::box_mesh(element, vector(box.size), box.cells);
 }
 
 Mesh filled_mesh(const SceneObject& object, const std::string& path) {
@@ -56,28 +62,44 @@ Mesh filled_mesh(const SceneObject& object, const std::string& path) {
 
 Mesh file_mesh(const SceneObject& object, const std::string& path) {
   Mesh mesh = transformed(read_mesh(path), placing(object));
-  if (dimension_of(mesh.element) != 3)
-    throw SourceError(object.at("mesh"),
-                      fmt::format("{} holds {} cells; an object needs solid cells (a closed surface in .obj, .stl or "
-                                  ".ply is filled)",
-                                  path, name_of(mesh.element)));
-  const bool refine = object.element == "tet10" && mesh.element == Element::tet4;
-  if (object.wrote("element") && !refine && element_named(object.element) != mesh.element)
+  const Element wanted = element_named(object.element);
+  if (object.wrote("element") && wanted != mesh.element && degree_of(wanted) == 2 &&
+      linear_element(wanted) == mesh.element)
+    return to_quadratic(mesh, wanted);
+  if (object.wrote("element") && wanted != mesh.element)
     throw SourceError(object.at("element"),
                       fmt::format("{} holds {} cells; leave 'element' out to use them", path, name_of(mesh.element)));
   return mesh;
+}
+
+// Membranes need a thickness, lines a cross-section, and nothing else has one.
+void check_section(const SceneObject& object, Element element) {
+  const int dimension = dimension_of(element);
+  const char* kinds[] = {"point", "line", "membrane", "solid"};
+  for (const auto& [key, use, unit] : {std::tuple("thickness", 2, "m"), std::tuple("cross_section", 1, "m^2")}) {
+    if (object.wrote(key) && dimension != use)
+      throw SourceError(object.at(key), fmt::format("'{}' has no use here: {} cells make a {}", key, name_of(element),
+                                                    kinds[dimension]));
+    if (!(section_of(object, use) > 0) && dimension == use)
+      throw SourceError(
+          object.at(object.box ? "element" : "mesh"),
+          fmt::format("{} cells make a {}: give its '{}' in {} (a closed surface in .obj, .stl or .ply is "
+                      "filled)",
+                      name_of(element), kinds[dimension], key, unit));
+  }
 }
 
 Mesh load_mesh(const SceneObject& object, const std::string& folder) {
   const std::string path = (std::filesystem::path(folder) / object.mesh).lexically_normal().string();
   Mesh mesh;
   if (object.box)
-    mesh = transformed(box_mesh(object), placing(object));
+    mesh = transformed(made_box(object), placing(object));
   else if (object.mesh.ends_with(".msh"))
     mesh = file_mesh(object, path);
   else
     mesh = filled_mesh(object, path);
   if (object.element == "tet10" && mesh.element == Element::tet4) mesh = to_quadratic(mesh, Element::tet10);
+  check_section(object, mesh.element);
   mesh.source = object.box ? "box of object '" + object.name + "'" : path;
   check_mesh(mesh);
   return mesh;
@@ -115,8 +137,13 @@ Body load_body(const SceneObject& object, const std::string& folder) {
   body.ordered = std::move(reordered.mesh);
   body.vertex_from = std::move(reordered.vertex_from);
   body.fixed = fixed_vertices(object, body.ordered);
-  for (const auto& triangle : surface_triangles(body.ordered))
-    body.surface.insert(body.surface.end(), triangle.begin(), triangle.end());
+  body.quadrature = object.quadrature;
+  body.section = section_of(object, dimension_of(body.mesh.element));
+  if (dimension_of(body.ordered.element) < 2)
+    body.surface = body.ordered.cells;
+  else
+    for (const auto& triangle : surface_triangles(body.ordered))
+      body.surface.insert(body.surface.end(), triangle.begin(), triangle.end());
   std::sort(body.surface.begin(), body.surface.end());
   body.surface.erase(std::unique(body.surface.begin(), body.surface.end()), body.surface.end());
   return body;

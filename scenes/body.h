@@ -1,6 +1,7 @@
 #pragma once
 // The mesh of one object: read or made, filled, moved to its start, checked, and reordered for memory.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,12 +12,14 @@ namespace ergon {
 
 struct Body {
   std::string name;
-  Mesh mesh;                     // in the order of its source, moved to its start
-  Mesh ordered;                  // the same in the order in which it is computed
-  std::vector<int> vertex_from;  // vertex i of `ordered` is vertex vertex_from[i] of `mesh`
-  std::vector<int> fixed;        // vertices of `ordered` that never move
-  std::vector<int> surface;      // vertices of `ordered` that may touch something
-  int first_vertex = 0;          // of `ordered` among all vertices of the scene
+  Mesh mesh;                      // in the order of its source, moved to its start
+  Mesh ordered;                   // the same in the order in which it is computed
+  std::vector<int> vertex_from;   // vertex i of `ordered` is vertex vertex_from[i] of `mesh`
+  std::vector<int> fixed;         // vertices of `ordered` that never move
+  std::vector<int> surface;       // vertices of `ordered` that may touch something
+  std::optional<int> quadrature;  // exactness; absent: the element's own
+  double section = 1;             // rest volume per measure of its cells: 1, a membrane's thickness (m), a line's (m^2)
+  int first_vertex = 0;           // of `ordered` among all vertices of the scene
 };
 
 // `folder` is what paths are relative to. Throws SourceError at the scene's line for whatever the mesh functions

@@ -127,7 +127,7 @@ Potential object_potential(const UsedLaw& law, const Kernel& kernel, const Body&
                            const Eigen::VectorXd& mass) {
   const int first = body.first_vertex, count = body.ordered.vertices();
   if (law.energy->kind == Energy::Kind::density)
-    return Potential::on_mesh(law.energy->name, kernel, body.ordered, first, law.params);
+    return Potential::on_mesh(law.energy->name, kernel, body.ordered, first, law.params, body.quadrature);
   if (law.energy->geometry == "edge")
     return Potential::on_stencils(law.energy->name, kernel, edges_of(body), X, law.params, {});
   return Potential::on_stencils(law.energy->name, kernel, points_of(first, count), X, law.params,
@@ -195,7 +195,7 @@ void lay_out(const Scene& scene, BuiltScene& out) {
     const int first = body.first_vertex, count = body.ordered.vertices();
     out.start.x.middleCols(first, count) = body.ordered.X;
     out.start.v.middleCols(first, count).colwise() = vector(scene.objects[i].velocity);
-    out.mass.segment(first, count) = lumped_masses(body.ordered, scene.objects[i].density);
+    out.mass.segment(first, count) = lumped_masses(body.ordered, scene.objects[i].density * body.section);
     for (int vertex : body.fixed) {
       fixed[static_cast<size_t>(first + vertex)] = 1;
       out.start.v.col(first + vertex).setZero();

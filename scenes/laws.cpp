@@ -75,13 +75,10 @@ Parameters checked_params(const Energy& energy, const EnergyUse& use) {
 void check_supported(const Energy& energy, const EnergyUse& use) {
   const Place& place = use.at("law");
   const bool density = energy.kind == Energy::Kind::density;
-  if (density && energy.geometry != "solid")
-    throw SourceError(place,
-                      fmt::format("{} is a density of a {}; an object is a solid", energy.name, energy.geometry));
   if (density) return;
   if (energy.geometry != "point" && energy.geometry != "edge")
-    throw SourceError(place, fmt::format("{} is an energy of a {}; an object carries densities of solids and energies "
-                                         "of points and edges",
+    throw SourceError(place, fmt::format("{} is an energy of a {}; an object carries densities and energies of points "
+                                         "and edges",
                                          energy.name, energy.geometry));
   if (!energy.cases.empty() || !energy.active.empty())
     throw SourceError(place, fmt::format("{} acts only under its conditions (case, active), as contact does; an object "

@@ -66,10 +66,13 @@ struct SceneObject : Located {
   std::optional<BoxSource> box;  // one corner at the origin before the object is moved
   double max_edge = 0;           // m, of the tetrahedra that fill a surface; 0: continued from the surface
   std::string element = "tet4";
+  std::optional<int> quadrature;  // exactness; absent: the element's own
   double scale = 1;
   Vector3 rotate = {0, 0, 0};     // rad, about x, then y, then z (fixed axes)
   Vector3 translate = {0, 0, 0};  // m
   double density = 0;             // kg/m^3
+  double thickness = 0;           // m, of a membrane
+  double cross_section = 0;       // m^2, of a line
   Vector3 velocity = {0, 0, 0};   // m/s
   std::vector<EnergyUse> energies;
   std::vector<BoxSelector> fixed;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/mesh/quadrature.h"
+
 namespace ergon {
 namespace {
 
@@ -116,6 +118,10 @@ Section<BoxSelector> fixed_section() {
   return out;
 }
 
+std::vector<std::string> element_names() {
+  return {"tet4", "tet10", "hex8", "hex20", "hex27", "prism6", "tri3", "tri6", "quad4", "quad9", "edge2", "edge3"};
+}
+
 void check_object(const std::string&, const SceneObject& object) {
   const bool surface = object.wrote("mesh") && !object.mesh.ends_with(".msh");
   if (object.box.has_value() == object.wrote("mesh"))
@@ -132,7 +138,7 @@ void check_object(const std::string&, const SceneObject& object) {
     throw SourceError(object.at("max_edge"),
                       "'max_edge' has no use here: it is for surface meshes (.obj, .stl, .ply), which are filled with "
                       "tetrahedra");
-  if (object.wrote("element") && surface && object.element == "hex8")
+  if (object.wrote("element") && surface && object.element != "tet4" && object.element != "tet10")
     throw SourceError(object.at("element"), "a surface is filled with tetrahedra: 'element' must be tet4 or tet10");
 }
 
@@ -149,12 +155,22 @@ Section<SceneObject> object_section() {
       number_key("max_edge", &T::max_edge, "m", positive, Need::optional,
                  "longest edge wanted of the tetrahedra that fill a surface, after scaling",
                  "continued from the surface"),
-      choice_key("element", &T::element, {"tet4", "tet10", "hex8"}, "element of a box, or of a filled surface"),
+      choice_key(
+          "element", &T::element, element_names(),
+          "element of a box, or of a filled surface; membranes (tri, quad) fill the box's rectangle z = 0, lines "
+          "(edge) its edge along x"),
+      integer_key("quadrature", &T::quadrature, {0, kMaxExactness, false, false}, Need::optional,
+                  "degree of polynomials that the energies' quadrature integrates exactly on an element",
+                  "full integration of the element's stiffness"),
       number_key("scale", &T::scale, "1", positive, Need::optional, "factor on the mesh's coordinates"),
       vector_key("rotate", &T::rotate, "rad", any, Need::optional,
                  "angles about the x, then y, then z axis, after scaling"),
       vector_key("translate", &T::translate, "m", any, Need::optional, "displacement, after rotating"),
       number_key("density", &T::density, "kg/m^3", positive, Need::required, "mass per rest volume"),
+      number_key("thickness", &T::thickness, "m", positive, Need::optional, "of a membrane, for its mass",
+                 "required for membranes"),
+      number_key("cross_section", &T::cross_section, "m^2", positive, Need::optional, "of a line, for its mass",
+                 "required for lines"),
       vector_key("velocity", &T::velocity, "m/s", any, Need::optional, "velocity at the start"),
       tables_key("energy", &T::energies, energy_section, Need::required, "what the object is made of"),
       tables_key("fixed", &T::fixed, fixed_section, Need::optional, "vertices that never move"),

@@ -19,7 +19,9 @@ void add_kernels(CLI::App& bench, Run& run) {
   auto json = std::make_shared<bool>(false);
   command->add_option("--energy", options->energies, "name or file; may be repeated; default: the catalogue")
       ->take_all();
-  command->add_option("--element", options->element, "Tet4, Tet10, Hex8, Tri3, Edge2; default: one that fits");
+  command->add_option(
+      "--element", options->element,
+      "Tet4, Tet10, Hex8, Hex20, Hex27, Prism6, Tri3, Tri6, Quad4, Quad9, Edge2, Edge3; default: one that fits");
   command->add_option("--entry", options->entry, "value, gradient or hessian; default: all three");
   command->add_option("--project", options->projection, "negative eigenvalues: clamp, abs or none");
   command->add_option("--set", options->set, "NAME=VALUE of an input; the others are chosen within their ranges")

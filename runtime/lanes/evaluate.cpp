@@ -108,7 +108,7 @@ int batch_of(const Stencils& s) {
 template <class S>
 int scratch_of(const Stencils& s) {
   const int n = S::points(s);
-  return batch_of<S>(s) * s.quadrature * S::kPacked * kWidth + 9 * kWidth * (n * (n + 1) / 2);
+  return batch_of<S>(s) * s.quadrature * S::kPacked * kWidth + 9 * kWidth * (n * (n + 1) / 2) + element_room<S>(s);
 }
 
 template <class S>
@@ -157,7 +157,7 @@ void hessian_of(const Stencils& s, BlockRange range, const ChunkBlocks& blocks, 
       if (differences.apply) {
         difference_matrix<S>(differences, packed, element);
       } else {
-        element_matrix<S>(s, block, packed, element);
+        element_matrix<S>(s, block, packed, element, element + 9L * kWidth * pairs);
       }
       add_element<S>(s, block, element, room.sums);
     }

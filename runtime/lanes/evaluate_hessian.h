@@ -1,7 +1,7 @@
 #pragma once
 // From q-Hessians to element matrices, and from these to the sums of a chunk. Included only by files in runtime/lanes.
 
-#include "runtime/lanes/evaluate_shape.h"
+#include "runtime/lanes/evaluate_table.h"
 
 namespace ergon::lanes {
 namespace {
@@ -9,7 +9,7 @@ namespace {
 // The element matrix of one vector of stencils: block (a, b <= a) = volume * sum_kl w_ka w_lb H_kl, summed over the
 // points of quadrature; nine vectors, column by column, at a*(a + 1)/2 + b. `packed` is [quadrature][packed].
 template <class S>
-inline void element_matrix(const Stencils& s, int block_index, const double* packed, double* element) {
+inline void sum_products(const Stencils& s, int block_index, const double* packed, double* element) {
   constexpr int kVectors = S::kVectors;
   const int n = S::points(s);
   const int last = S::kDensity ? n - 1 : n;  // a density's last diagonal block is minus the sum of those beside it
@@ -51,13 +51,28 @@ inline void element_matrix(const Stencils& s, int block_index, const double* pac
   }
 }
 
+// `room`: element_room doubles.
+template <class S>
+inline void element_matrix(const Stencils& s, int block_index, double* packed, double* element, double* room) {
+  if constexpr (S::kTable) {
+    sum_table_products<S>(s, block_index, packed, element, room);
+  } else {
+    sum_products<S>(s, block_index, packed, element);
+  }
+}
+
+template <class S>
+inline int element_room(const Stencils& s) {
+  return S::kTable ? s.quadrature * S::kVectors * 3 * kWidth : 0;
+}
+
 template <class S>
 inline void add_element(const Stencils& s, int block_index, double* element, double* sums) {
   const int n = S::points(s), pairs = n * (n + 1) / 2;
   const int* slots = s.slots + static_cast<long>(block_index) * pairs * kWidth;
-  const unsigned char* turned = S::kDensity ? nullptr : s.turned + static_cast<long>(block_index) * pairs;
+  const unsigned char* turned = S::kAscending ? nullptr : s.turned + static_cast<long>(block_index) * pairs;
   for (int pair = 0; pair < pairs; ++pair) {
-    if (!S::kDensity && turned[pair] != 0) transpose_lanes(element + 9L * pair * kWidth, turned[pair]);
+    if (!S::kAscending && turned[pair] != 0) transpose_lanes(element + 9L * pair * kWidth, turned[pair]);
     add_block(sums, slots + pair * kWidth, element + 9L * pair * kWidth);
   }
 }

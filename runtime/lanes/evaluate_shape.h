@@ -8,13 +8,18 @@
 namespace ergon::lanes {
 namespace {
 
-// P points (0: read from the data), Q vectors in q, weights per lane (a density) or the same for all (a stencil
-// energy).
-template <int P, int Q, bool D>
+// Where weights come from: constants of a stencil energy's kernel, the same in all lanes; gradients of shape functions
+// in each lane; or their gradients in the reference element, the same in all lanes, times an inverse map in each.
+enum class Source { kernel, gradients, table };
+
+// P points (0: read from the data) and Q vectors in q.
+template <int P, int Q, Source W>
 struct Shape {
   static constexpr int kPoints = P;
   static constexpr int kVectors = Q;
-  static constexpr bool kDensity = D;
+  static constexpr bool kDensity = W != Source::kernel;
+  static constexpr bool kTable = W == Source::table;
+  static constexpr bool kAscending = W == Source::gradients;  // points stand in ascending order of vertex
   static constexpr int kMost = P != 0 ? P : kMaxPoints;
   static constexpr int kSize = 3 * Q;
   static constexpr int kPacked = kSize * (kSize + 1) / 2;
@@ -25,30 +30,33 @@ struct Shape {
 template <class F>
 auto with_shape(const Stencils& s, F f) {
   const int points = s.points, vectors = s.kernel->q_vectors;
+  if (s.kernel->density && s.table != nullptr) {
+    if (vectors == 3) return f(Shape<0, 3, Source::table>{});
+    return vectors == 2 ? f(Shape<0, 2, Source::table>{}) : f(Shape<0, 1, Source::table>{});
+  }
   if (s.kernel->density) {
-    if (vectors == 3) return points == 4 ? f(Shape<4, 3, true>{}) : f(Shape<0, 3, true>{});
-    if (vectors == 2) return points == 3 ? f(Shape<3, 2, true>{}) : f(Shape<0, 2, true>{});
-    return f(Shape<0, 1, true>{});
+    if (vectors == 3) return f(Shape<4, 3, Source::gradients>{});
+    return vectors == 2 ? f(Shape<3, 2, Source::gradients>{}) : f(Shape<2, 1, Source::gradients>{});
   }
   if (vectors == 1) {
-    if (points == 1) return f(Shape<1, 1, false>{});
-    return points == 2 ? f(Shape<2, 1, false>{}) : f(Shape<0, 1, false>{});
+    if (points == 1) return f(Shape<1, 1, Source::kernel>{});
+    return points == 2 ? f(Shape<2, 1, Source::kernel>{}) : f(Shape<0, 1, Source::kernel>{});
   }
-  if (vectors == 2) return f(Shape<0, 2, false>{});
-  if (vectors == 3) return points == 4 ? f(Shape<4, 3, false>{}) : f(Shape<0, 3, false>{});
-  return f(Shape<0, 4, false>{});
+  if (vectors == 2) return f(Shape<0, 2, Source::kernel>{});
+  if (vectors == 3) return points == 4 ? f(Shape<4, 3, Source::kernel>{}) : f(Shape<0, 3, Source::kernel>{});
+  return f(Shape<0, 4, Source::kernel>{});
 }
 
 inline const double* data_of(const Stencils& s, int block) {
   return s.elements + static_cast<long>(block) * s.kernel->elements * kWidth;
 }
 
-template <class S, bool = S::kDensity>
+template <class S, bool = S::kDensity, bool = S::kTable>
 class Weights;
 
 // A density: gradients of the shape functions at one point of quadrature. They sum to zero over the points.
 template <class S>
-class Weights<S, true> {
+class Weights<S, true, false> {
  public:
   Weights(const Stencils& s, int block, int quadrature) {
     const int free = S::points(s) - 1;
@@ -74,7 +82,7 @@ class Weights<S, true> {
 
 // A stencil energy: constants of the kernel.
 template <class S>
-class Weights<S, false> {
+class Weights<S, false, false> {
  public:
   Weights(const Stencils& s, int, int) : weight_(s.kernel->weights), points_(S::points(s)) {}
   Real at(int k, int a) const { return splat(weight_[k * points_ + a]); }
@@ -82,6 +90,30 @@ class Weights<S, false> {
 
  private:
   const double* weight_;
+  int points_;
+};
+
+// A density on an element whose gradients vary: those in the reference element, and the inverse of its map. The
+// gradient of point a along axis k of the rest shape is sum_j map(j, k) table(j)[a].
+template <class S>
+class Weights<S, true, true> {
+ public:
+  Weights(const Stencils& s, int block, int quadrature) : points_(S::points(s)) {
+    constexpr int Q = S::kVectors;
+    const long place = static_cast<long>(block) * s.quadrature + quadrature;
+    const double* m = s.weights + place * Q * Q * kWidth;
+    for (int i = 0; i < Q * Q; ++i) map_[i] = load(m + i * kWidth);
+    volume_ = load(s.volumes + place * kWidth);
+    table_ = s.table + static_cast<long>(quadrature) * Q * points_;
+  }
+  Real map(int j, int k) const { return map_[j * S::kVectors + k]; }
+  const double* table(int j) const { return table_ + j * points_; }
+  Real times_volume(Real a) const { return a * volume_; }
+
+ private:
+  Real map_[S::kVectors * S::kVectors];
+  Real volume_;
+  const double* table_;
   int points_;
 };
 
@@ -98,7 +130,7 @@ inline void prefetch_block(const Stencils& s, int block) {
   const long places = static_cast<long>(block) * s.quadrature;
   prefetch(s.vertices + points, 4L * kWidth * n);
   if constexpr (S::kDensity) {
-    const long weights = vector * S::kVectors * (n - 1);
+    const long weights = vector * S::kVectors * (S::kTable ? S::kVectors : n - 1);
     prefetch(s.weights + places * (weights / 8), weights * s.quadrature);
     prefetch(s.volumes + places * kWidth, vector * s.quadrature);
   }
@@ -122,25 +154,61 @@ inline void gather_points(const Stencils& s, int block, const double* x, Vector3
 template <class S>
 inline void form_q(const Stencils& s, const Weights<S>& w, const Vector3* points, double* q) {
   const int n = S::kDensity ? S::points(s) - 1 : S::points(s);
-  for (int k = 0; k < S::kVectors; ++k) {
-    Real sum[3] = {splat(0), splat(0), splat(0)};
+  if constexpr (S::kTable) {
+    constexpr int Q = S::kVectors;
+    Real by_axis[Q][3] = {};
     for (int a = 0; a < n; ++a) {
-      for (int c = 0; c < 3; ++c) sum[c] += w.at(k, a) * points[a].c[c];
+      for (int j = 0; j < Q; ++j) {
+        const Real weight = splat(w.table(j)[a]);
+        for (int c = 0; c < 3; ++c) by_axis[j][c] += weight * points[a].c[c];
+      }
     }
-    for (int c = 0; c < 3; ++c) store(q + (3 * k + c) * kWidth, sum[c]);
-  }
+    for (int k = 0; k < Q; ++k) {
+      for (int c = 0; c < 3; ++c) {
+        Real sum = w.map(0, k) * by_axis[0][c];
+        for (int j = 1; j < Q; ++j) sum += w.map(j, k) * by_axis[j][c];
+        store(q + (3 * k + c) * kWidth, sum);
+      }
+    }
+    return;
+  } else
+    for (int k = 0; k < S::kVectors; ++k) {
+      Real sum[3] = {splat(0), splat(0), splat(0)};
+      for (int a = 0; a < n; ++a) {
+        for (int c = 0; c < 3; ++c) sum[c] += w.at(k, a) * points[a].c[c];
+      }
+      for (int c = 0; c < 3; ++c) store(q + (3 * k + c) * kWidth, sum[c]);
+    }
 }
 
 // g_a += volume * sum_k w_ka dpsi/dq_k for all points but a density's last, whose gradient is minus the sum.
 template <class S>
 inline void chain_gradient(const Stencils& s, const Weights<S>& w, const double* by_q, Vector3* by_point) {
   const int n = S::kDensity ? S::points(s) - 1 : S::points(s);
-  for (int k = 0; k < S::kVectors; ++k) {
-    for (int c = 0; c < 3; ++c) {
-      const Real g = w.times_volume(load(by_q + (3 * k + c) * kWidth));
-      for (int a = 0; a < n; ++a) by_point[a].c[c] += w.at(k, a) * g;
+  if constexpr (S::kTable) {
+    constexpr int Q = S::kVectors;
+    Real by_axis[Q][3];
+    for (int j = 0; j < Q; ++j) {
+      for (int c = 0; c < 3; ++c) {
+        Real sum = w.map(j, 0) * load(by_q + c * kWidth);
+        for (int k = 1; k < Q; ++k) sum += w.map(j, k) * load(by_q + (3 * k + c) * kWidth);
+        by_axis[j][c] = w.times_volume(sum);
+      }
     }
-  }
+    for (int a = 0; a < n; ++a) {
+      for (int j = 0; j < Q; ++j) {
+        const Real weight = splat(w.table(j)[a]);
+        for (int c = 0; c < 3; ++c) by_point[a].c[c] += weight * by_axis[j][c];
+      }
+    }
+    return;
+  } else
+    for (int k = 0; k < S::kVectors; ++k) {
+      for (int c = 0; c < 3; ++c) {
+        const Real g = w.times_volume(load(by_q + (3 * k + c) * kWidth));
+        for (int a = 0; a < n; ++a) by_point[a].c[c] += w.at(k, a) * g;
+      }
+    }
 }
 
 template <class S>

@@ -20,18 +20,29 @@ constexpr int kProjectNone = 2;
 struct Stencils {
   const ErgonKernel* kernel;
   int chunk;
-  int count;               // real stencils
-  int points;              // per stencil
-  int quadrature;          // points of quadrature per stencil
-  const int* vertices;     // [block][points][W]; a density's points stand in ascending order of vertex
-  const double* weights;   // density: [block][quadrature][q_vectors][points - 1][W]; the last is minus their sum
+  int count;            // real stencils
+  int points;           // per stencil
+  int quadrature;       // points of quadrature per stencil
+  const int* vertices;  // [block][points][W]; without a table, a density's stand in ascending order
+  // A density: gradients of the shape functions in the reference element, [quadrature][q_vectors][points]; null where
+  // they are constant.
+  const double* table;
+  // Where the table is a product over three axes with three points each, else null: [2][3][3], at point p and node i of
+  // an axis the gradient at p of the polynomial that is 1 at point i and 0 at the others, then the value at p of the
+  // shape function of node i; and the node of the element at i + 3*j + 9*k.
+  const double* axis;
+  const int* axis_nodes;
+  // A density. With a table: the inverse of the map to the rest shape, [block][quadrature][q_vectors of the reference
+  // element][q_vectors][W]. Without: gradients at rest, [block][quadrature][q_vectors][points - 1][W]; the last is
+  // minus the sum of the others.
+  const double* weights;
   const double* volumes;   // density: [block][quadrature][W]
   const double* elements;  // [block][kernel->elements][W]
   const double* uniforms;  // [kernel->uniforms]
   // Where among the sums of its chunk the 3x3 block of points (a, b <= a) is added, at a*(a + 1)/2 + b of
   // [block][pairs][W], in doubles; behind the last for a pair with a fixed vertex and for padding.
   const int* slots;
-  // [block][pairs]: bit l is set when in lane l the block's row in the matrix is that of b. Null for a density.
+  // [block][pairs]: bit l is set when in lane l the block's row in the matrix is that of b. Null where points ascend.
   const unsigned char* turned;
 };
 

@@ -150,6 +150,7 @@ int degree_of(Element element) { return row_of(element).degree; }
 ReferenceShape shape_of(Element element) { return row_of(element).shape; }
 std::string name_of(Element element) { return row_of(element).name; }
 int vtk_cell_type(Element element) { return row_of(element).vtk_cell_type; }
+bool has_constant_gradients(Element element) { return nodes_of(element) == dimension_of(element) + 1; }
 const std::vector<Eigen::Vector3d>& reference_nodes(Element element) { return basis_of(element).nodes; }
 
 Element element_named(std::string_view name) {

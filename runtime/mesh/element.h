@@ -26,6 +26,9 @@ std::string name_of(Element element);          // "Tet4"
 Element element_named(std::string_view name);  // any capitalisation; throws InputError naming the nearest
 int vtk_cell_type(Element element);            // vtkCellType.h
 
+// Whether gradients of the shape functions are the same at all points: the map to the rest shape is affine.
+bool has_constant_gradients(Element element);
+
 // Nodes in the reference element.
 const std::vector<Eigen::Vector3d>& reference_nodes(Element element);
 

@@ -31,7 +31,7 @@ std::vector<BrickPart> parts_of(Element element) {
       // Each follows one order of the axes from corner 0 to corner 7; odd orders are listed mirrored.
       return {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}};
   }
-  throw InputError(fmt::format("box: a box is not made of {} elements", name_of(element)));
+  return {};
 }
 
 void check_box(int dimension, const Eigen::Vector3d& size, const std::array<int, 3>& cells, size_t nodes_per_brick) {
@@ -98,6 +98,7 @@ class BoxLattice {
 Mesh box_mesh(Element element, const Eigen::Vector3d& size, const std::array<int, 3>& cells) {
   const int dimension = dimension_of(element);
   const std::vector<BrickPart> parts = parts_of(element);
+  if (parts.empty()) throw InputError(fmt::format("box: a box is not made of {} elements", name_of(element)));
   check_box(dimension, size, cells, parts.size() * static_cast<size_t>(nodes_of(element)));
   // Places of the nodes of a brick on the lattice, from the brick's lowest corner.
   std::vector<Eigen::Vector3i> nodes;
@@ -127,6 +128,8 @@ Mesh box_mesh(Element element, const Eigen::Vector3d& size, const std::array<int
   for_each_node([&](const Eigen::Vector3i& place) { mesh.cells.push_back(lattice.number(place)); });
   return mesh;
 }
+
+int elements_per_brick(Element element) { return static_cast<int>(parts_of(element).size()); }
 
 Element linear_element(Element element) {
   for (const Element linear : all_elements()) {

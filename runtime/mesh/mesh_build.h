@@ -13,6 +13,7 @@ namespace ergon {
 // axis; sizes and cells beyond the element's dimension are not used. Vertices run fastest along x, then y. Throws
 // InputError when a size is not positive and finite, a cell count is below 1, or the element is a point.
 Mesh box_mesh(Element element, const Eigen::Vector3d& size, const std::array<int, 3>& cells);
+int elements_per_brick(Element element);  // 0 for a point
 
 inline Mesh box_tets(const Eigen::Vector3d& size, const std::array<int, 3>& cells) {
   return box_mesh(Element::tet4, size, cells);

@@ -9,8 +9,8 @@
 namespace ergon {
 
 // Reads a .msh file of Gmsh, format 2 or 4.1, text or binary. (Not through Gmsh itself: 4.8 crashes on a cell that
-// names a missing node.) Cells of the highest dimension present are kept: Tet4, Tet10, Hex8, or Tri3 when there are no
-// solids. Vertices of no kept cell are left out; the others are in the order of their tags. Throws InputError with the
+// names a missing node.) Cells of the highest dimension present are kept, of any element but points, in VTK's order of
+// nodes. Vertices of no kept cell are left out; the others are in the order of their tags. Throws InputError with the
 // line (text): missing file, another format, no cells, more than one kind of cell, cells of another kind, a node that
 // does not exist or exists twice, a coordinate that is not finite, a file that is cut off.
 Mesh read_mesh(const std::string& path);

@@ -56,15 +56,11 @@ std::vector<Eigen::MatrixXd> gradients_at(Element element, const std::vector<Eig
   return gradients;
 }
 
-bool is_linear_simplex(Element element) {
-  return degree_of(element) <= 1 && nodes_of(element) == dimension_of(element) + 1;
-}
-
 // Where orientation is checked; one point tells all of a linear simplex.
-std::vector<Eigen::Vector3d> checked_points(Element element) {
-  std::vector<Eigen::Vector3d> points = default_quadrature(element).points;
+std::vector<Eigen::Vector3d> checked_points(Element element, int exactness) {
+  std::vector<Eigen::Vector3d> points = quadrature(element, exactness).points;
   const std::vector<Eigen::Vector3d>& nodes = reference_nodes(element);
-  if (!is_linear_simplex(element)) points.insert(points.end(), nodes.begin(), nodes.end());
+  if (!has_constant_gradients(element)) points.insert(points.end(), nodes.begin(), nodes.end());
   return points;
 }
 
@@ -113,12 +109,14 @@ void check_names(const Mesh& mesh) {
 
 }  // namespace
 
-void check_mesh(const Mesh& mesh) {
+void check_mesh(const Mesh& mesh) { check_mesh(mesh, default_exactness(mesh.element)); }
+
+void check_mesh(const Mesh& mesh, int exactness) {
   check_names(mesh);
   const int count = nodes_of(mesh.element);
   const int dimension = dimension_of(mesh.element);
   if (dimension == 0) return;
-  const auto gradients = gradients_at(mesh.element, checked_points(mesh.element));
+  const auto gradients = gradients_at(mesh.element, checked_points(mesh.element, exactness));
   const Eigen::MatrixXd centre = shape_gradients(mesh.element, reference_centre(mesh.element));
   int bad = 0, first = -1;
   for (int c = 0; c < mesh.cell_count(); ++c) {
@@ -148,7 +146,7 @@ void check_mesh(const Mesh& mesh) {
 
 std::vector<double> rest_volumes(const Mesh& mesh) {
   // Along an axis the volume factor of a curved solid is of degree 3k - 1; on a simplex its total degree is 3k - 3.
-  const int exactness = is_linear_simplex(mesh.element) ? 1 : 3 * degree_of(mesh.element) - 1;
+  const int exactness = has_constant_gradients(mesh.element) ? 1 : 3 * degree_of(mesh.element) - 1;
   const QuadratureRule rule = quadrature(mesh.element, exactness);
   const auto gradients = gradients_at(mesh.element, rule.points);
   const size_t count = static_cast<size_t>(nodes_of(mesh.element));
@@ -166,7 +164,7 @@ Eigen::VectorXd lumped_masses(const Mesh& mesh, double density) {
     throw InputError(fmt::format("{}density is {}; it must be positive and finite", prefix_of(mesh), density));
   }
   const bool quadratic = degree_of(mesh.element) == 2;
-  const QuadratureRule rule = quadrature(mesh.element, is_linear_simplex(mesh.element) ? 1 : quadratic ? 4 : 3);
+  const QuadratureRule rule = quadrature(mesh.element, has_constant_gradients(mesh.element) ? 1 : quadratic ? 4 : 3);
   const auto gradients = gradients_at(mesh.element, rule.points);
   std::vector<Eigen::VectorXd> share;  // of the nodes, at each point
   for (const Eigen::Vector3d& point : rule.points) {

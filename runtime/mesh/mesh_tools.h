@@ -15,10 +15,11 @@ namespace ergon {
 std::vector<std::array<int, 3>> surface_triangles(const Mesh& mesh);
 
 // Throws InputError unless every coordinate is finite, every cell names existing and different vertices, and every cell
-// is positively oriented and not flat: its volume factor at quadrature points and nodes exceeds 1e-12 of the cube
-// (square, length) of its extent. A membrane or line must not be turned back against its centre. The message names the
-// first such cell, its volume and the number of them.
-void check_mesh(const Mesh& mesh);
+// is positively oriented and not flat: its volume factor at the points of quadrature and nodes exceeds 1e-12 of the
+// cube (square, length) of its extent. A membrane or line must not be turned back against its centre. The message names
+// the first such cell, its volume and the number of them.
+void check_mesh(const Mesh& mesh, int exactness);  // of the quadrature
+void check_mesh(const Mesh& mesh);                 // the default one
 
 // Volume of each cell: m^3 for solids (exact, also where curved), m^2 for membranes, m for lines, 1 for points. Solids
 // are signed: negative when inverted.

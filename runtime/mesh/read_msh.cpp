@@ -24,32 +24,36 @@ struct MshCell {
   int nodes;
   int dimension;
   std::optional<Element> element = std::nullopt;
+  std::vector<size_t> order = {};  // Gmsh's place of each node in VTK's order; empty: the same
 };
-const MshCell kMshCells[] = {{1, "Line 2", 2, 1},
-                             {2, "Triangle 3", 3, 2, Element::tri3},
-                             {3, "Quadrilateral 4", 4, 2},
-                             {4, "Tetrahedron 4", 4, 3, Element::tet4},
-                             {5, "Hexahedron 8", 8, 3, Element::hex8},
-                             {6, "Prism 6", 6, 3},
-                             {7, "Pyramid 5", 5, 3},
-                             {8, "Line 3", 3, 1},
-                             {9, "Triangle 6", 6, 2},
-                             {10, "Quadrilateral 9", 9, 2},
-                             {11, "Tetrahedron 10", 10, 3, Element::tet10},
-                             {12, "Hexahedron 27", 27, 3},
-                             {13, "Prism 18", 18, 3},
-                             {14, "Pyramid 14", 14, 3},
-                             {15, "Point", 1, 0},
-                             {16, "Quadrilateral 8", 8, 2},
-                             {17, "Hexahedron 20", 20, 3},
-                             {18, "Prism 15", 15, 3},
-                             {19, "Pyramid 13", 13, 3},
-                             {21, "Triangle 10", 10, 2},
-                             {23, "Triangle 15", 15, 2},
-                             {26, "Line 4", 4, 1},
-                             {27, "Line 5", 5, 1},
-                             {29, "Tetrahedron 20", 20, 3},
-                             {30, "Tetrahedron 35", 35, 3}};
+const MshCell kMshCells[] = {
+    {1, "Line 2", 2, 1, Element::edge2},
+    {2, "Triangle 3", 3, 2, Element::tri3},
+    {3, "Quadrilateral 4", 4, 2, Element::quad4},
+    {4, "Tetrahedron 4", 4, 3, Element::tet4},
+    {5, "Hexahedron 8", 8, 3, Element::hex8},
+    {6, "Prism 6", 6, 3, Element::prism6},
+    {7, "Pyramid 5", 5, 3},
+    {8, "Line 3", 3, 1, Element::edge3},
+    {9, "Triangle 6", 6, 2, Element::tri6},
+    {10, "Quadrilateral 9", 9, 2, Element::quad9},
+    {11, "Tetrahedron 10", 10, 3, Element::tet10, {0, 1, 2, 3, 4, 5, 6, 7, 9, 8}},
+    {12, "Hexahedron 27", 27, 3, Element::hex27, {0,  1,  2,  3,  4,  5,  6,  7,  8,  11, 13, 9,  16, 18,
+                                                  19, 17, 10, 12, 14, 15, 22, 23, 21, 24, 20, 25, 26}},
+    {13, "Prism 18", 18, 3},
+    {14, "Pyramid 14", 14, 3},
+    {15, "Point", 1, 0},
+    {16, "Quadrilateral 8", 8, 2},
+    {17, "Hexahedron 20", 20, 3, Element::hex20, {0,  1, 2,  3,  4,  5,  6,  7,  8,  11,
+                                                  13, 9, 16, 18, 19, 17, 10, 12, 14, 15}},
+    {18, "Prism 15", 15, 3},
+    {19, "Pyramid 13", 13, 3},
+    {21, "Triangle 10", 10, 2},
+    {23, "Triangle 15", 15, 2},
+    {26, "Line 4", 4, 1},
+    {27, "Line 5", 5, 1},
+    {29, "Tetrahedron 20", 20, 3},
+    {30, "Tetrahedron 35", 35, 3}};
 
 class MshReader {
  public:
@@ -270,7 +274,7 @@ class MshReader {
 
   // The cells of the highest dimension, with their vertices numbered anew.
   Mesh mesh() const {
-    int dimension = 2;
+    int dimension = 1;
     for (const auto& [type, cells] : cells_) {
       if (!cells.empty()) dimension = std::max(dimension, kind(type).dimension);
     }
@@ -281,14 +285,16 @@ class MshReader {
       kinds.push_back(&kind(type));
       names.push_back(kind(type).name);
     }
-    if (kinds.empty()) throw InputError(path_ + ": holds no tetrahedra, hexahedra or triangles");
+    if (kinds.empty()) throw InputError(path_ + ": holds no cells");
     if (kinds.size() > 1) {
       throw InputError(fmt::format("{}: holds more than one kind of cell: {}; mesh it with one kind", path_,
                                    fmt::join(names, ", ")));
     }
     if (!kinds[0]->element) {
-      throw InputError(fmt::format("{}: cells of the kind '{}' are not supported; known are Tet4, Tet10, Hex8 and Tri3",
-                                   path_, names[0]));
+      throw InputError(
+          fmt::format("{}: cells of the kind '{}' are not supported; known are Tet4, Tet10, Hex8, "
+                      "Hex20, Hex27, Prism6, Tri3, Tri6, Quad4, Quad9, Edge2 and Edge3",
+                      path_, names[0]));
     }
     const std::vector<long long>& tags = cells_.at(kinds[0]->type);
     std::vector<long long> used = tags;
@@ -302,9 +308,11 @@ class MshReader {
     for (const long long tag : tags) {
       mesh.cells.push_back(static_cast<int>(std::lower_bound(used.begin(), used.end(), tag) - used.begin()));
     }
-    if (mesh.element == Element::tet10) {
-      // Gmsh lists the nodes of edges (2, 3) and (1, 3) the other way round than VTK.
-      for (size_t c = 0; c < mesh.cells.size(); c += 10) std::swap(mesh.cells[c + 8], mesh.cells[c + 9]);
+    const std::vector<size_t>& order = kinds[0]->order;
+    std::vector<int> cell(order.size());
+    for (size_t first = 0; first < mesh.cells.size() && !order.empty(); first += order.size()) {
+      for (size_t i = 0; i < order.size(); ++i) cell[i] = mesh.cells[first + order[i]];
+      std::copy(cell.begin(), cell.end(), mesh.cells.begin() + static_cast<ptrdiff_t>(first));
     }
     return mesh;
   }

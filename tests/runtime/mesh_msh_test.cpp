@@ -77,11 +77,13 @@ TEST(mesh_msh, bad_msh_files_are_told) {
   EXPECT_EQ(error_of("a.vtk", "x"), "a.vtk: unknown mesh format; a mesh is read from a .msh file of Gmsh");
   EXPECT_EQ(error_of("a.msh", "Point(1) = {0, 0, 0};\n"),
             "a.msh: is not a Gmsh mesh: it does not start with $MeshFormat");
-  EXPECT_EQ(error_of("a.msh", msh({"15 2 0 1 10"})), "a.msh: holds no tetrahedra, hexahedra or triangles");
+  EXPECT_EQ(error_of("a.msh", msh({"15 2 0 1 10"})), "a.msh: holds no cells");
   EXPECT_EQ(error_of("a.msh", msh({"4 2 0 1 10 20 40 50", "5 2 0 1 10 20 30 40 50 60 70 80"})),
             "a.msh: holds more than one kind of cell: Tetrahedron 4, Hexahedron 8; mesh it with one kind");
-  EXPECT_EQ(error_of("a.msh", msh({"6 2 0 1 10 20 30 50 60 70"})),
-            "a.msh: cells of the kind 'Prism 6' are not supported; known are Tet4, Tet10, Hex8 and Tri3");
+  EXPECT_EQ(
+      error_of("a.msh", msh({"7 2 0 1 10 20 30 40 50"})),
+      "a.msh: cells of the kind 'Pyramid 5' are not supported; known are Tet4, Tet10, Hex8, Hex20, Hex27, Prism6, "
+      "Tri3, Tri6, Quad4, Quad9, Edge2 and Edge3");
   EXPECT_EQ(error_of("a.msh", msh({"4 2 0 1 10 20 40 99"}, "99 0 nan 1\n")),
             "a.msh:15: node 99 is (0, nan, 1); it must be finite");
   EXPECT_EQ(error_of("a.msh", msh({"4 2 0 1 10 20 40 77"})), "a.msh:18: element 1 names node 77, which does not exist");
@@ -96,6 +98,48 @@ TEST(mesh_msh, bad_msh_files_are_told) {
   for (size_t length = 60; length + 14 < whole.size(); length += 17) {
     EXPECT_NE(error_of("cut.msh", whole.substr(0, length)), "no error") << length;
   }
+}
+
+// Gmsh itself tells where the nodes of its cells are, in their order.
+TEST(mesh_msh, cells_of_every_kind_come_in_the_order_of_vtk) {
+  const TemporaryFolder folder;
+  const std::vector<std::pair<int, Element>> kinds{{1, Element::edge2},  {2, Element::tri3},   {3, Element::quad4},
+                                                   {4, Element::tet4},   {5, Element::hex8},   {6, Element::prism6},
+                                                   {8, Element::edge3},  {9, Element::tri6},   {10, Element::quad9},
+                                                   {11, Element::tet10}, {12, Element::hex27}, {17, Element::hex20}};
+  gmsh::initialize(0, nullptr, false);
+  for (const auto& [type, element] : kinds) {
+    std::string name;
+    int dimension = 0, order = 0, nodes = 0, primary = 0;
+    std::vector<double> coordinates;
+    gmsh::model::mesh::getElementProperties(type, name, dimension, order, nodes, coordinates, primary);
+    ASSERT_EQ(nodes, nodes_of(element));
+    std::string text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" + std::to_string(nodes) + "\n";
+    std::string cell = "1 " + std::to_string(type) + " 2 0 1";
+    for (int i = 0; i < nodes; ++i) {
+      text += std::to_string(i + 1);
+      for (int axis = 0; axis < 3; ++axis) {
+        text += " " + std::to_string(axis < dimension ? coordinates[static_cast<size_t>(dimension * i + axis)] : 0.0);
+      }
+      text += "\n";
+      cell += " " + std::to_string(i + 1);
+    }
+    const Mesh mesh = read_mesh(folder.file("one.msh", text + "$EndNodes\n$Elements\n1\n" + cell + "\n$EndElements\n"));
+    ASSERT_EQ(mesh.element, element);
+    check_mesh(mesh);
+    // Gmsh's factors are [-1, 1] where ours are [0, 1], but for triangles and tetrahedra.
+    const ReferenceShape shape = shape_of(element);
+    const bool simplex = shape == ReferenceShape::triangle || shape == ReferenceShape::tetrahedron;
+    for (int i = 0; i < nodes; ++i) {
+      Eigen::Vector3d expected = Eigen::Vector3d::Zero();
+      for (int axis = 0; axis < dimension; ++axis) {
+        const double t = reference_nodes(element)[static_cast<size_t>(i)](axis);
+        expected(axis) = simplex || (shape == ReferenceShape::prism && axis < 2) ? t : 2 * t - 1;
+      }
+      EXPECT_LT((mesh.X.col(mesh.cells[static_cast<size_t>(i)]) - expected).norm(), 1e-6) << name << " node " << i;
+    }
+  }
+  gmsh::finalize();
 }
 
 // A ball of radius 1 meshed by Gmsh and saved in a format of its own.

@@ -87,11 +87,15 @@ TEST(Potential, RefusesCellsThatAreInvertedFlatOrOutOfRange) {
       0, 0, 1, 0, 1,        //
       0, 0, 0, 1, 0;
   mesh.cells = {0, 1, 2, 3, 0, 2, 1, 3};
-  EXPECT_EQ(solid_message(kStiff, mesh),
-            "two.msh: cell 1 (nodes 0 2 1 3) is inverted: its volume is -0.166667 m^3; swap two of its nodes");
+  EXPECT_EQ(
+      solid_message(kStiff, mesh),
+      "two.msh: cell 1 (Tet4, vertices 0 2 1 3) is inverted: volume -0.166667 m^3; 1 of 2 cells inverted or flat; "
+      "reverse the order of its vertices or repair the mesh");
   mesh.cells = {0, 1, 2, 4, 0, 1, 2, 3};
-  EXPECT_EQ(solid_message(kStiff, mesh),
-            "two.msh: cell 0 (nodes 0 1 2 4) is flat: its volume is 0 m^3; remove or repair it");
+  EXPECT_EQ(
+      solid_message(kStiff, mesh),
+      "two.msh: cell 0 (Tet4, vertices 0 1 2 4) is flat: volume 0 m^3; 1 of 2 cells inverted or flat; remove it or "
+      "repair the mesh");
   mesh.cells = {0, 1, 2, 3, 0, 1, 2, 5};
   EXPECT_EQ(solid_message(kStiff, mesh), "potential 'block': cell 1 names vertex 5; vertices are 0 to 4");
 }

@@ -95,7 +95,7 @@ TEST(builder, keeps_the_order_of_the_mesh_beside_the_order_of_computing) {
 }
 
 TEST(builder, carries_elements_and_edge_and_point_energies) {
-  for (const char* element : {"tet10", "hex8"}) {
+  for (const char* element : {"tet10", "hex8", "hex20", "hex27", "prism6"}) {
     BuiltScene built = build_text(time_part + block + "element = \"" + element + "\"\n");
     EXPECT_EQ(built.bodies[0].ordered.element, element_named(element));
     EXPECT_EQ(built.system->potential(0).stencil_count(), built.bodies[0].ordered.cell_count());
@@ -116,6 +116,60 @@ energy = [{ law = "spring", k = "1 N/cm" }, { law = "gravity", g = [0, "-1.6 m/s
   const Energies energies = stepper.energies(stretched);
   ASSERT_EQ(energies.stored[0].first, "spring");
   EXPECT_NEAR(energies.stored[0].second, 12 * 0.5 * 100 * 1e-4, 1e-12);
+}
+
+// What is emitted for a density knows nothing of elements: Hex27 takes no more source than Tet4.
+TEST(builder, one_kernel_serves_all_elements) {
+  using testing::ElementsAre;
+  std::string text = time_part + block;
+  for (const char* element : {"tet10", "hex20", "hex27", "prism6"}) {
+    std::string other = block;
+    other.replace(other.find("\"block\""), 7, "\"" + std::string(element) + "\"\nelement = \"" + element + "\"");
+    text += other;
+  }
+  EXPECT_THAT(kernels_of(text), ElementsAre("stable_neo_hookean", "inertia", "gravity"));
+  const BuiltScene built = build_text(text);
+  for (int i = 1; i < 5; ++i) EXPECT_EQ(&built.system->potential(i).kernel(), &built.system->potential(0).kernel());
+}
+
+TEST(builder, quadrature_is_chosen_by_its_exactness) {
+  const auto points = [](const std::string& keys) {
+    return build_text(time_part + block + keys).system->potential(0).quadrature_points();
+  };
+  EXPECT_EQ(points(""), 1);
+  EXPECT_EQ(points("quadrature = 2\n"), 4);
+  EXPECT_EQ(points("element = \"hex8\"\n"), 8);
+  EXPECT_EQ(points("element = \"hex8\"\nquadrature = 0\n"), 1);
+  EXPECT_EQ(points("element = \"hex27\"\nquadrature = 7\n"), 64);
+}
+
+TEST(builder, membranes_and_lines_have_the_mass_of_their_thickness_and_cross_section) {
+  const std::string law = std::string(ERGON_SOURCE_DIR) + "/tests/errors/scenes/parts/membrane.energy";
+  for (const std::string element : {"tri3", "tri6", "quad4", "quad9"}) {
+    const BuiltScene sheet = build_text(time_part + R"(
+[[object]]
+name = "sheet"
+box = { size = [2, 3, 1], cells = [2, 3, 1] }
+element = ")" + element + R"("
+thickness = "1 mm"
+density = 1000
+energy = [{ law = ")" + law + R"(", k = 1 }]
+)");
+    EXPECT_NEAR(sheet.mass.sum(), 6, 1e-12) << element;
+    EXPECT_EQ(sheet.system->potential(0).stencil_count(), element.substr(0, 3) == "tri" ? 12 : 6);
+    EXPECT_EQ(sheet.bodies[0].surface.size(), static_cast<size_t>(sheet.bodies[0].ordered.vertices()));
+  }
+  const BuiltScene rope = build_text(time_part + R"(
+[[object]]
+name = "rope"
+box = { size = [2, 1, 1], cells = [4, 1, 1] }
+element = "edge3"
+cross_section = "1 cm^2"
+density = 1000
+energy = [{ law = "spring", k = "1 N/cm" }]
+)");
+  EXPECT_NEAR(rope.mass.sum(), 0.2, 1e-12);
+  EXPECT_EQ(rope.bodies[0].surface.size(), 9u);
 }
 
 TEST(builder, leaves_the_number_of_threads_as_it_is) {

@@ -21,7 +21,8 @@ TEST(Sample, CubeHasSixTetrahedraPerCellAndUnitVolume) {
 }
 
 TEST(Sample, EveryElementOfTheBenchmarkHasASoundMesh) {
-  for (Element element : {Element::tet4, Element::tet10, Element::hex8, Element::tri3, Element::edge2}) {
+  for (Element element : all_elements()) {
+    if (element == Element::point) continue;
     EXPECT_NO_THROW(check_mesh(sample_mesh(element, 2))) << name_of(element);
   }
 }
