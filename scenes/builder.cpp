@@ -134,8 +134,19 @@ Potential object_potential(const UsedLaw& law, const Kernel& kernel, const Body&
                                 point_masses(*law.energy, mass, first, count));
 }
 
+void check_geometry(const SceneObject& object, const EnergyUse& use, const Energy& energy, Element element) {
+  const char* geometries[] = {"point", "line", "membrane", "solid"};
+  const std::string geometry = geometries[dimension_of(element)];
+  if (energy.kind == Energy::Kind::density && energy.geometry != geometry)
+    throw SourceError(use.at("law"),
+                      fmt::format("{} is a density of a {}; object '{}' is a {} of {} cells", energy.name,
+                                  energy.geometry, object.name, geometry, name_of(element)));
+}
+
 void add_object(const SceneObject& object, const std::vector<UsedLaw>& laws, const Body& body, const Kernels& kernels,
                 BuiltScene& out) {
+  for (size_t i = 0; i < laws.size(); ++i)
+    check_geometry(object, object.energies[i], *laws[i].energy, body.ordered.element);
   for (size_t i = 0; i < laws.size(); ++i) try {
       out.system->add(object_potential(laws[i], kernels.get(*laws[i].energy), body, out.start.x, out.mass));
     } catch (const InputError& bad) {

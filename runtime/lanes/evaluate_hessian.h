@@ -63,7 +63,8 @@ inline void element_matrix(const Stencils& s, int block_index, double* packed, d
 
 template <class S>
 inline int element_room(const Stencils& s) {
-  return S::kTable ? s.quadrature * S::kVectors * 3 * kWidth : 0;
+  if constexpr (S::kTable) return table_room<S>(s);
+  return 0;
 }
 
 template <class S>

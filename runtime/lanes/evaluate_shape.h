@@ -31,7 +31,7 @@ template <class F>
 auto with_shape(const Stencils& s, F f) {
   const int points = s.points, vectors = s.kernel->q_vectors;
   if (s.kernel->density && s.table != nullptr) {
-    if (vectors == 3) return f(Shape<0, 3, Source::table>{});
+    if (vectors == 3) return points == 10 ? f(Shape<10, 3, Source::table>{}) : f(Shape<0, 3, Source::table>{});
     return vectors == 2 ? f(Shape<0, 2, Source::table>{}) : f(Shape<0, 1, Source::table>{});
   }
   if (s.kernel->density) {

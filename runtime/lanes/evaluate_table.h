@@ -50,95 +50,108 @@ inline void to_reference_axes(const Weights<S>& w, double* packed) {
   }
 }
 
-// Column c of the blocks (a, b) for G consecutive a: sum over `steps` of weights[step][a] half[step], three vectors
-// each, stored at out[g].
-template <int G>
+// R components of the blocks (a, b) for G consecutive a: sum over `steps` of weights[step][a] half[step][r].
+template <int G, int R>
 inline void add_rows(const double* half, const double* weights, int points, int steps, double* const* out) {
-  Real sum[G][3] = {};
-  for (int step = 0; step < steps; ++step, half += 3 * kWidth, weights += points) {
-    const Real x = load(half), y = load(half + kWidth), z = load(half + 2 * kWidth);
-#pragma GCC unroll 8
+  Real sum[G][R] = {};
+  for (int step = 0; step < steps; ++step, half += R * kWidth, weights += points) {
+    Real x[R];
+#pragma GCC unroll 3
+    for (int r = 0; r < R; ++r) x[r] = load(half + r * kWidth);
+#pragma GCC unroll 12
     for (int g = 0; g < G; ++g) {
       const Real weight = splat(weights[g]);
-      sum[g][0] += weight * x;
-      sum[g][1] += weight * y;
-      sum[g][2] += weight * z;
+#pragma GCC unroll 3
+      for (int r = 0; r < R; ++r) sum[g][r] += weight * x[r];
     }
   }
-#pragma GCC unroll 8
+#pragma GCC unroll 12
   for (int g = 0; g < G; ++g) {
-    for (int r = 0; r < 3; ++r) store(out[g] + r * kWidth, sum[g][r]);
+#pragma GCC unroll 3
+    for (int r = 0; r < R; ++r) store(out[g] + r * kWidth, sum[g][r]);
   }
 }
 
-// What add_rows keeps in registers: three vectors for each row.
-constexpr int kRows = kWidth == 8 ? 8 : 4;
+// Rows whose sums add_rows keeps in registers.
+template <int R>
+constexpr int kRows = R == 1        ? 12
+                      : kWidth == 8 ? 8
+                                    : 4;
 
+template <int R, int G = kRows<R>>
 inline void add_some_rows(int rows, const double* half, const double* weights, int points, int steps,
                           double* const* out) {
-  switch (rows) {
-    case 1:
-      return add_rows<1>(half, weights, points, steps, out);
-    case 2:
-      return add_rows<2>(half, weights, points, steps, out);
-    case 3:
-      return add_rows<3>(half, weights, points, steps, out);
-    case 4:
-      return add_rows<4>(half, weights, points, steps, out);
-    case 5:
-      return add_rows<5>(half, weights, points, steps, out);
-    case 6:
-      return add_rows<6>(half, weights, points, steps, out);
-    case 7:
-      return add_rows<7>(half, weights, points, steps, out);
-    default:
-      return add_rows<8>(half, weights, points, steps, out);
+  if constexpr (G > 1) {
+    if (rows < G) return add_some_rows<R, G - 1>(rows, half, weights, points, steps, out);
+  }
+  add_rows<G, R>(half, weights, points, steps, out);
+}
+
+// R of the nine components of all blocks, from the one numbered `first`. The entries they need are copied to `room`, so
+// that what is read again and again stays in the first-level cache.
+template <class S, int R>
+inline void sum_components(const Stencils& s, int first, const double* packed, double* element, double* room) {
+  constexpr int Q = S::kVectors;
+  const int n = S::points(s), c = first / 3;
+  double* entries = room;  // [quadrature][Q][Q][R]
+  for (int p = 0; p < s.quadrature; ++p, packed += S::kPacked * kWidth) {
+    for (int i = 0; i < Q; ++i) {
+      for (int j = 0; j < Q; ++j) {
+        for (int r = first % 3; r < first % 3 + R; ++r, entries += kWidth) {
+          store(entries, load(packed + packed_entry(i, j, r, c) * kWidth));
+        }
+      }
+    }
+  }
+  double* const half = entries;  // [quadrature][Q][R]
+  double* const out = element + static_cast<long>(first) * kWidth;
+  for (int b = 0; b < n; ++b) {
+    const double* h = room;
+    for (int p = 0; p < s.quadrature; ++p) {
+      Real weight[Q];
+      for (int j = 0; j < Q; ++j) weight[j] = splat(s.table[(p * Q + j) * n + b]);
+#pragma GCC unroll 3
+      for (int i = 0; i < Q; ++i, h += Q * R * kWidth) {
+#pragma GCC unroll 3
+        for (int r = 0; r < R; ++r) {
+          Real sum = weight[0] * load(h + r * kWidth);
+          for (int j = 1; j < Q; ++j) sum += weight[j] * load(h + (j * R + r) * kWidth);
+          store(half + ((p * Q + i) * R + r) * kWidth, sum);
+        }
+      }
+    }
+    if (R == 1 && Q == 3 && s.axis != nullptr) {
+      add_tensor_rows(s, half, b, out);
+      continue;
+    }
+    for (int a = b; a < n; a += kRows<R>) {
+      const int rows = n - a < kRows<R> ? n - a : kRows<R>;
+      double* place[kRows<R>];
+      for (int g = 0; g < rows; ++g) place[g] = out + 9L * ((a + g) * (a + g + 1) / 2 + b) * kWidth;
+      add_some_rows<R>(rows, half, s.table + a, n, s.quadrature * Q, place);
+    }
   }
 }
 
-// As sum_products; `packed` is spoiled, `room` holds 3 * q_vectors vectors for each point of quadrature.
+// Three components at a time are quicker as long as their entries fit into the first-level cache.
+constexpr int kFewPoints = 8;
+
+template <class S>
+inline int table_room(const Stencils& s) {
+  const int entries = S::kVectors * (S::kVectors + 1) * s.quadrature * kWidth;
+  return s.quadrature > kFewPoints ? entries : 3 * entries;
+}
+
+// As sum_products; `packed` is spoiled, `room` holds table_room doubles.
 template <class S>
 inline void sum_table_products(const Stencils& s, int block_index, double* packed, double* element, double* room) {
-  constexpr int Q = S::kVectors;
-  const int n = S::points(s), steps = s.quadrature * Q;
   for (int p = 0; p < s.quadrature; ++p) {
     to_reference_axes<S>(Weights<S>(s, block_index, p), packed + static_cast<long>(p) * S::kPacked * kWidth);
   }
-  for (int c = 0; c < 3; ++c) {
-    for (int b = 0; b < n; ++b) {
-      double* half = room;
-      for (int p = 0; p < s.quadrature; ++p) {
-        const double* h = packed + static_cast<long>(p) * S::kPacked * kWidth;
-        Real weight[Q];
-        for (int j = 0; j < Q; ++j) weight[j] = splat(s.table[(p * Q + j) * n + b]);
-#pragma GCC unroll 3
-        for (int i = 0; i < Q; ++i) {
-#pragma GCC unroll 3
-          for (int r = 0; r < 3; ++r, half += kWidth) {
-            const auto entry = [&](int j) {
-              const int row = 3 * i + r, column = 3 * j + c;
-              return load(h +
-                          (row >= column ? row * (row + 1) / 2 + column : column * (column + 1) / 2 + row) * kWidth);
-            };
-            Real sum = weight[0] * entry(0);
-            for (int j = 1; j < Q; ++j) sum += weight[j] * entry(j);
-            store(half, sum);
-          }
-        }
-      }
-      if (Q == 3 && s.axis != nullptr) {
-        add_tensor_rows(s, room, b, element + 3L * c * kWidth);
-        continue;
-      }
-      for (int a = b; a < n; a += kRows) {
-        const int rows = n - a < kRows ? n - a : kRows;
-        double* out[kRows];
-        for (int g = 0; g < rows; ++g) {
-          out[g] = element + (9L * ((a + g) * (a + g + 1) / 2 + b) + 3 * c) * kWidth;
-        }
-        add_some_rows(rows, room, s.table + a, n, steps, out);
-      }
-    }
+  if (s.quadrature > kFewPoints) {
+    for (int first = 0; first < 9; ++first) sum_components<S, 1>(s, first, packed, element, room);
+  } else {
+    for (int first = 0; first < 9; first += 3) sum_components<S, 3>(s, first, packed, element, room);
   }
 }
 

@@ -20,47 +20,45 @@ inline void transpose_times(const double* m, const Real* in, Real* out, int step
   }
 }
 
-// sum over points p and axes i of (gradient of the shape function of a along i at p) half[p][i], for all a >= b. `half`
-// is [27][3][3], of vectors; `column` the place of entry (0, 0) of the element matrix.
-inline void add_tensor_rows(const Stencils& s, const double* half, int b, double* column) {
+// One component of the blocks (a, b) for all a >= b: sum over points p and axes i of (gradient of the shape function of
+// a along i at p) half[p][i]. `half` is [27][3], of vectors; `out` the place of the component in the first block.
+inline void add_tensor_rows(const Stencils& s, const double* half, int b, double* out) {
   // Points instead of nodes first: there, a gradient along an axis takes only the points of that line.
   const double *between = s.axis, *values = s.axis + 9;
-  for (int r = 0; r < 3; ++r, half += kWidth) {
-    const auto at = [half](int p, int i) { return load(half + (9L * p + 3 * i) * kWidth); };
-    Real sum[27];
+  const auto at = [half](int p, int i) { return load(half + (3L * p + i) * kWidth); };
+  Real sum[27];
 #pragma GCC unroll 9
-    for (int line = 0; line < 9; ++line) {
-      const Real along[3] = {at(line, 2), at(line + 9, 2), at(line + 18, 2)};
-      Real out[3];
-      transpose_times<false>(between, along, out, 1);
-      for (int k = 0; k < 3; ++k) sum[line + 9 * k] = out[k];
-    }
+  for (int line = 0; line < 9; ++line) {
+    const Real along[3] = {at(line, 2), at(line + 9, 2), at(line + 18, 2)};
+    Real summed[3];
+    transpose_times<false>(between, along, summed, 1);
+    for (int k = 0; k < 3; ++k) sum[line + 9 * k] = summed[k];
+  }
+  for (int k = 0; k < 3; ++k) {
+    Real plane[9], in[9];
+#pragma GCC unroll 9
+    for (int i = 0; i < 9; ++i) plane[i] = sum[9 * k + i];
+#pragma GCC unroll 9
+    for (int i = 0; i < 9; ++i) in[i] = at(9 * k + i, 0);
+#pragma GCC unroll 3
+    for (int i = 0; i < 3; ++i) transpose_times<true>(between, in + 3 * i, plane + 3 * i, 1);
+#pragma GCC unroll 9
+    for (int i = 0; i < 9; ++i) in[i] = at(9 * k + i, 1);
+#pragma GCC unroll 3
+    for (int i = 0; i < 3; ++i) transpose_times<true>(between, in + i, plane + i, 3);
+#pragma GCC unroll 3
+    for (int i = 0; i < 3; ++i) transpose_times<false>(values, plane + 3 * i, in + 3 * i, 1);
+#pragma GCC unroll 3
+    for (int i = 0; i < 3; ++i) transpose_times<false>(values, in + i, sum + 9 * k + i, 3);
+  }
+  for (int line = 0; line < 9; ++line) {
+    Real summed[3];
+    const Real in[3] = {sum[line], sum[line + 9], sum[line + 18]};
+    transpose_times<false>(values, in, summed, 1);
+#pragma GCC unroll 3
     for (int k = 0; k < 3; ++k) {
-      Real plane[9], in[9];
-#pragma GCC unroll 9
-      for (int i = 0; i < 9; ++i) plane[i] = sum[9 * k + i];
-#pragma GCC unroll 9
-      for (int i = 0; i < 9; ++i) in[i] = at(9 * k + i, 0);
-#pragma GCC unroll 3
-      for (int i = 0; i < 3; ++i) transpose_times<true>(between, in + 3 * i, plane + 3 * i, 1);
-#pragma GCC unroll 9
-      for (int i = 0; i < 9; ++i) in[i] = at(9 * k + i, 1);
-#pragma GCC unroll 3
-      for (int i = 0; i < 3; ++i) transpose_times<true>(between, in + i, plane + i, 3);
-#pragma GCC unroll 3
-      for (int i = 0; i < 3; ++i) transpose_times<false>(values, plane + 3 * i, in + 3 * i, 1);
-#pragma GCC unroll 3
-      for (int i = 0; i < 3; ++i) transpose_times<false>(values, in + i, sum + 9 * k + i, 3);
-    }
-    for (int line = 0; line < 9; ++line) {
-      Real out[3];
-      const Real in[3] = {sum[line], sum[line + 9], sum[line + 18]};
-      transpose_times<false>(values, in, out, 1);
-#pragma GCC unroll 3
-      for (int k = 0; k < 3; ++k) {
-        const int a = s.axis_nodes[line + 9 * k];
-        if (a >= b) store(column + (9L * (a * (a + 1) / 2 + b) + r) * kWidth, out[k]);
-      }
+      const int a = s.axis_nodes[line + 9 * k];
+      if (a >= b) store(out + 9L * (a * (a + 1) / 2 + b) * kWidth, summed[k]);
     }
   }
 }
