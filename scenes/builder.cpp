@@ -134,19 +134,25 @@ Potential object_potential(const UsedLaw& law, const Kernel& kernel, const Body&
                                 point_masses(*law.energy, mass, first, count));
 }
 
-void check_geometry(const SceneObject& object, const EnergyUse& use, const Energy& energy, Element element) {
+// Densities of solids live on solids, and so on.
+void check_geometries(const Scene& scene, const std::vector<std::vector<UsedLaw>>& used,
+                      const std::vector<Body>& bodies) {
   const char* geometries[] = {"point", "line", "membrane", "solid"};
-  const std::string geometry = geometries[dimension_of(element)];
-  if (energy.kind == Energy::Kind::density && energy.geometry != geometry)
-    throw SourceError(use.at("law"),
-                      fmt::format("{} is a density of a {}; object '{}' is a {} of {} cells", energy.name,
-                                  energy.geometry, object.name, geometry, name_of(element)));
+  for (size_t i = 0; i < used.size(); ++i) {
+    const Element element = bodies[i].ordered.element;
+    const std::string geometry = geometries[dimension_of(element)];
+    for (size_t k = 0; k < used[i].size(); ++k) {
+      const Energy& energy = *used[i][k].energy;
+      if (energy.kind != Energy::Kind::density || energy.geometry == geometry) continue;
+      throw SourceError(scene.objects[i].energies[k].at("law"),
+                        fmt::format("{} is a density of a {}; object '{}' is a {} of {} cells", energy.name,
+                                    energy.geometry, bodies[i].name, geometry, name_of(element)));
+    }
+  }
 }
 
 void add_object(const SceneObject& object, const std::vector<UsedLaw>& laws, const Body& body, const Kernels& kernels,
                 BuiltScene& out) {
-  for (size_t i = 0; i < laws.size(); ++i)
-    check_geometry(object, object.energies[i], *laws[i].energy, body.ordered.element);
   for (size_t i = 0; i < laws.size(); ++i) try {
       out.system->add(object_potential(laws[i], kernels.get(*laws[i].energy), body, out.start.x, out.mass));
     } catch (const InputError& bad) {
@@ -236,6 +242,7 @@ BuiltScene build_scene(const Scene& scene, const Catalogue& catalogue, const Ker
   {
     Stopwatch watch(out.seconds.meshes);
     for (const SceneObject& object : scene.objects) out.bodies.push_back(load_body(object, folder));
+    check_geometries(scene, used, out.bodies);
     lay_out(scene, out);
     check_start(scene, out.bodies);
   }

@@ -19,20 +19,20 @@ struct Options {
   bool json = false;
 };
 
-// One element, or one stencil: `points` vertices and `calls` evaluations of the kernel.
-Row element_row(const Generated& kernel, const std::string& name, int points, int calls) {
+// One element, or one stencil: `points` vertices and `calls` evaluations of the kernel, each with `weights` numbers for
+// every vector of q.
+Row element_row(const Generated& kernel, const std::string& name, int points, int calls, int weights) {
   constexpr int number = 8, index = 4, block = 9 * number;
   const Module& m = kernel.module;
   const bool density = m.points == 0;
   int hessian = 0;
   for (const EntryCost& cost : kernel.costs)
     if (cost.entry == "hessian") hessian = cost.operations;
-  // Kept for each point of quadrature: the gradients of all shape functions but one, and the volume.
-  const int weights = density ? calls * (m.q_vectors * (points - 1) + 1) * number : 0;
+  const int weights_bytes = density ? calls * (m.q_vectors * weights + 1) * number : 0;  // and the volume
   return {{"element", name},
           {"kernel_calls", calls},
           {"operations", calls * hessian},
-          {"weights_bytes", weights},
+          {"weights_bytes", weights_bytes},
           {"data_bytes", kernel.counts.elements * number},
           {"positions_bytes", points * (index + 3 * number)},
           {"gradient_bytes", points * 3 * number},
@@ -41,12 +41,16 @@ Row element_row(const Generated& kernel, const std::string& name, int points, in
 
 std::vector<Row> element_rows(const Generated& kernel) {
   const Energy& energy = *kernel.module.energy;
-  if (energy.kind == Energy::Kind::stencil) return {element_row(kernel, energy.geometry, kernel.module.points, 1)};
+  if (energy.kind == Energy::Kind::stencil) return {element_row(kernel, energy.geometry, kernel.module.points, 1, 0)};
   std::vector<Row> rows;
-  for (Element element : all_elements())
-    if (dimension_of(element) == energy.symbols[0].shape.cols)
-      rows.push_back(element_row(kernel, name_of(element), nodes_of(element),
-                                 static_cast<int>(default_quadrature(element).points.size())));
+  const int dimension = energy.symbols[0].shape.cols;
+  for (Element element : all_elements()) {
+    if (dimension_of(element) != dimension) continue;
+    // The gradients of all shape functions but one, or where they vary the inverse of the map to the rest shape.
+    const int weights = has_constant_gradients(element) ? nodes_of(element) - 1 : dimension;
+    rows.push_back(element_row(kernel, name_of(element), nodes_of(element),
+                               static_cast<int>(default_quadrature(element).points.size()), weights));
+  }
   return rows;
 }
 
