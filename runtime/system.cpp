@@ -83,13 +83,20 @@ bool System::Impl::worth_threads() const {
 
 void System::Impl::load_positions(const Eigen::Matrix3Xd& positions) {
   if (positions.cols() != vertices) throw std::invalid_argument("System: one position per vertex is needed");
+  const double* from = positions.data();
+  if (std::any_of(terms.begin(), terms.end(), [](const SystemTerm& t) { return t.configuration < 0; })) {
 #pragma omp parallel for schedule(static) if (vertices > kWorthThreads)
-  for (int v = 0; v < vertices; ++v) {
-    for (int c = 0; c < 3; ++c) x[4 * static_cast<size_t>(v) + static_cast<size_t>(c)] = positions(c, v);
+    for (int v = 0; v < vertices; ++v) {
+      for (ptrdiff_t c = 0; c < 3; ++c) x[static_cast<size_t>(4L * v + c)] = from[3L * v + c];
+    }
   }
   for (RestConfiguration& configuration : configurations) {
+    const double* X = configuration.X.data();
+    double* moved = configuration.displacement.data();
 #pragma omp parallel for schedule(static) if (vertices > kWorthThreads)
-    for (size_t i = 0; i < x.size(); ++i) configuration.displacement[i] = x[i] - configuration.X[i];
+    for (int v = 0; v < vertices; ++v) {
+      for (ptrdiff_t c = 0; c < 3; ++c) moved[4L * v + c] = from[3L * v + c] - X[3L * v + c];
+    }
   }
 }
 
@@ -105,7 +112,7 @@ void System::Impl::find_configuration(SystemTerm& term) {
   if (first + count > static_cast<size_t>(vertices)) throw std::invalid_argument("add: the mesh exceeds the system");
   const auto agrees = [&](const RestConfiguration& c) {
     for (size_t v = 0; v < count; ++v) {
-      const double* kept = c.X.data() + 4 * (first + v);
+      const double* kept = c.X.data() + 3 * (first + v);
       if (c.known[first + v] && !std::equal(kept, kept + 3, d.rest.data() + 3 * v)) return false;
     }
     return true;
@@ -113,13 +120,14 @@ void System::Impl::find_configuration(SystemTerm& term) {
   const auto found = std::find_if(configurations.begin(), configurations.end(), agrees);
   term.configuration = static_cast<int>(found - configurations.begin());
   if (found == configurations.end()) {
-    configurations.push_back({std::vector<char>(static_cast<size_t>(vertices), 0), AlignedVector<double>(x.size(), 0.0),
-                              AlignedVector<double>(x.size(), 0.0)});
+    const auto all = static_cast<size_t>(vertices);
+    configurations.push_back(
+        {std::vector<char>(all, 0), Eigen::Matrix3Xd::Zero(3, vertices), AlignedVector<double>(4 * all, 0.0)});
   }
   RestConfiguration& c = configurations[static_cast<size_t>(term.configuration)];
   for (size_t v = 0; v < count; ++v) {
     c.known[first + v] = 1;
-    std::copy_n(d.rest.data() + 3 * v, 3, c.X.data() + 4 * (first + v));
+    std::copy_n(d.rest.data() + 3 * v, 3, c.X.data() + 3 * (first + v));
   }
 }
 

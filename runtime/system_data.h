@@ -11,8 +11,8 @@ namespace ergon {
 
 // Rest positions of some vertices of a system and how far the others moved from there, for densities whose q is F - I.
 struct RestConfiguration {
-  std::vector<char> known;             // per vertex
-  AlignedVector<double> X;             // 4 per vertex
+  std::vector<char> known;  // per vertex
+  Eigen::Matrix3Xd X;
   AlignedVector<double> displacement;  // x - X, 4 per vertex
 };
 
