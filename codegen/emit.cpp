@@ -129,12 +129,12 @@ std::string kernel_table(const Module& m, const OperationCounts& c, int lanes) {
       "extern \"C\" __attribute__((visibility(\"default\"))) const ErgonKernel ergon_kernel = {{\n"
       "  ERGON_KERNEL_ABI, {}, {}, {}, {}, {}, {}, {}, {},\n  {}, inputs, {}, {}, {}, {}, {}, {},\n  {}, {}, {}, {},\n"
       "  {}, {}, {}, {},\n  prepare_uniforms, prepare_elements, conditions, value_entry, gradient_entry, "
-      "hessian_entry, {},\n  {}, {}, {}}};\n",
+      "hessian_entry, {},\n  {}, {}, {}, {}}};\n",
       lanes, quoted(m.energy->name), quoted(m.case_name), quoted(m.energy->geometry), density ? 1 : 0, m.points,
       m.q_vectors, density ? "0" : "weights", inputs, m.params, m.raw, c.uniforms, c.elements, m.require.size(),
       m.active.size(), int{m.constant_gradient}, int{m.constant_hessian}, int{m.zero_hessian}, int{m.psd_hessian},
       c.value, c.gradient, c.hessian, c.divisions, density ? "0" : "points", int{m.displacement},
-      m.principal.empty() ? "0" : "principal_entry", c.principal);
+      m.principal.empty() ? "0" : "principal_entry", c.principal, m.changed >= 0 ? "projected_entry" : "0");
   return out;
 }
 
@@ -191,17 +191,22 @@ Emitted emit(const Module& m, const Schedule& s, int lanes) {
   FunctionText elements = function_text(p, slots, outputs_to("e", slots.elements), false, true, false, "raw");
   FunctionText conditions = text(join(outputs_to("active", s.active), outputs_to("require", s.require)));
   FunctionText principal_text = text(outputs_to("blocks", s.principal));
+  FunctionText projected_text;
+  if (s.changed >= 0)
+    projected_text = text(join(join(outputs_to("gradient", s.gradient), outputs_to("projected", s.projected)),
+                               {{"value[0]", s.value}, {"changed[0]", s.changed}}));
   FunctionText near = two_forms ? text({{"const V near", s.near}}) : FunctionText{};
 
   std::set<std::string> used;
   if (!s.require.empty()) used.insert("v_min");
   if (two_forms) used.insert("lanes_above");
-  std::vector<const FunctionText*> all = {&uniforms, &elements, &conditions, &near, &principal_text};
+  std::vector<const FunctionText*> all = {&uniforms, &elements, &conditions, &near, &principal_text, &projected_text};
   for (const FunctionText& t : texts) all.push_back(&t);
   for (const FunctionText* f : all) count_calls(p, f->instructions, used);
 
   Emitted out;
   counts[0].principal = static_cast<int>(principal_text.instructions.size());
+  counts[0].projected = static_cast<int>(projected_text.instructions.size());
   out.counts = counts[0];
   out.costs = cost_of_entries(s);
   out.source = header(m, out.counts, out.costs) + prelude(lanes, used) + kKernelAbiText + "\n";
@@ -229,6 +234,12 @@ Emitted emit(const Module& m, const Schedule& s, int lanes) {
         "  const V* s = (const V*)s_;\n  const V* e = (const V*)e_;\n  V* blocks = (V*)blocks_;\n"
         "  (void)s, (void)e, (void)u;\n{}}}\n\n",
         principal_text.body);
+  if (s.changed >= 0)
+    out.source += entry(
+        "projected_entry", "double negative_, double* value_, double* gradient_, double* projected_, double* changed_",
+        "  const V negative = negative_ - V{};\n  V* value = (V*)value_;\n  V* gradient = (V*)gradient_;\n"
+        "  V* projected = (V*)projected_;\n  V* changed = (V*)changed_;\n",
+        projected_text.body);
   out.source += kernel_table(m, counts[0], lanes);
   return out;
 }

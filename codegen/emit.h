@@ -15,6 +15,7 @@ struct OperationCounts {
   int value = 0;
   int gradient = 0;   // value and gradient
   int hessian = 0;    // value, gradient and Hessian
+  int projected = 0;  // the same with the Hessian projected in closed form; 0 when it has none
   int divisions = 0;  // in the Hessian entry point; square roots are counted apart
   int roots = 0;
   int calls = 0;      // transcendental functions

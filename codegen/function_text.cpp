@@ -88,6 +88,7 @@ class Writer {
       case Opcode::constant:
         return {literal(n.constant), n.constant < 0 ? kUnary : kAtom};
       case Opcode::input: {
+        if (n.source == Source::negative) return {"negative"};
         const char* array = n.source == Source::q         ? "q"
                             : n.source == Source::stretch ? "s"
                             : n.source == Source::param   ? "params"
@@ -137,11 +138,11 @@ class Writer {
 
   std::string unique(const std::string& name) {
     static const std::set<std::string> taken = {
-        "u",       "e",       "q",      "s",      "blocks",   "V",       "params", "raw",    "value", "gradient",
-        "hessian", "require", "active", "double", "int",      "float",   "char",   "const",  "if",    "else",
-        "for",     "while",   "do",     "new",    "delete",   "this",    "and",    "or",     "not",   "xor",
-        "auto",    "long",    "short",  "class",  "struct",   "union",   "void",   "return", "case",  "switch",
-        "default", "break",   "static", "extern", "template", "typename"};
+        "u",      "e",     "q",        "s",       "blocks",  "projected", "changed", "negative", "V",       "params",
+        "raw",    "value", "gradient", "hessian", "require", "active",    "double",  "int",      "float",   "char",
+        "const",  "if",    "else",     "for",     "while",   "do",        "new",     "delete",   "this",    "and",
+        "or",     "not",   "xor",      "auto",    "long",    "short",     "class",   "struct",   "union",   "void",
+        "return", "case",  "switch",   "default", "break",   "static",    "extern",  "template", "typename"};
     std::string candidate = taken.count(name) ? name + "_" : name;
     while (!names_.insert(candidate).second) candidate += "_";
     return candidate;

@@ -64,8 +64,9 @@ const char* name_of(Call call);
 // The function's value in double precision.
 double evaluate(Call call, const std::vector<double>& arguments);
 
-// Where an input comes from; its index counts within the kind. stretch: singular values of F.
-enum class Source { param, raw, point, q, stretch };
+// Where an input comes from; its index counts within the kind. stretch: singular values of F; negative: what becomes of
+// an eigenvalue x < 0, over -x: 0 or 1.
+enum class Source { param, raw, point, q, stretch, negative };
 
 struct Node {
   enum class Kind { constant, input, sum, product, call };

@@ -18,8 +18,9 @@ std::vector<double> interpret(const Graph& graph, const std::vector<NodeId>& wan
         const std::vector<double>& from = n.source == Source::param     ? inputs.params
                                           : n.source == Source::raw     ? inputs.raw
                                           : n.source == Source::point   ? inputs.points
+                                          : n.source == Source::q       ? inputs.q
                                           : n.source == Source::stretch ? inputs.stretch
-                                                                        : inputs.q;
+                                                                        : inputs.negative;
         v = from.at(static_cast<size_t>(n.index));
         break;
       }

@@ -8,7 +8,7 @@
 namespace ergon {
 
 struct GraphInputs {
-  std::vector<double> params{}, raw{}, points{}, q{}, stretch{};
+  std::vector<double> params{}, raw{}, points{}, q{}, stretch{}, negative{};
 };
 
 // The values of `wanted`. Throws std::out_of_range for an input that is not supplied.

@@ -10,9 +10,9 @@ namespace ergon {
 
 std::vector<NodeId> Module::roots() const {
   std::vector<NodeId> out;
-  for (NodeId one : {value, near, far.value})
+  for (NodeId one : {value, near, far.value, changed})
     if (one >= 0) out.push_back(one);
-  for (const auto* list : {&active, &require, &gradient, &hessian, &principal, &far.gradient, &far.hessian})
+  for (const auto* list : {&active, &require, &gradient, &hessian, &principal, &projected, &far.gradient, &far.hessian})
     out.insert(out.end(), list->begin(), list->end());
   return out;
 }

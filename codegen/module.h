@@ -53,7 +53,12 @@ struct Module {
   // Set by find_principal(); empty when there is no closed form.
   std::vector<NodeId> principal;
 
-  // Every node that something outside the graph refers to: value, conditions, gradient, Hessian, its principal blocks.
+  // Set by find_closed_form(): the projected Hessian, packed like the Hessian, and what is positive where projection
+  // changed it. Empty and -1 when none is known.
+  std::vector<NodeId> projected;
+  NodeId changed = -1;
+
+  // Every node that something outside the graph refers to: value, conditions, gradient, Hessian, its projection.
   std::vector<NodeId> roots() const;
 };
 

@@ -41,9 +41,9 @@ void rewrite(Module& module, const RewriteRule& rule) {
   auto renumber = [&](NodeId& id) {
     if (id >= 0) id = renumbered[static_cast<size_t>(id)];
   };
-  for (NodeId* one : {&module.value, &module.near, &module.far.value}) renumber(*one);
+  for (NodeId* one : {&module.value, &module.near, &module.far.value, &module.changed}) renumber(*one);
   for (auto* list : {&module.active, &module.require, &module.gradient, &module.hessian, &module.principal,
-                     &module.far.gradient, &module.far.hessian})
+                     &module.projected, &module.far.gradient, &module.far.hessian})
     for (NodeId& id : *list) renumber(id);
 }
 

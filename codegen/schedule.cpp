@@ -264,6 +264,8 @@ Schedule schedule(Module& module) {
   out.gradient = scheduler.values(module.gradient);
   out.hessian = scheduler.values(module.hessian);
   out.principal = scheduler.values(module.principal);
+  out.projected = scheduler.values(module.projected);
+  if (module.changed >= 0) out.changed = scheduler.value(module.changed);
   if (module.near >= 0) {
     out.near = scheduler.value(module.near);
     out.far_value = scheduler.value(module.far.value);

@@ -1,6 +1,6 @@
 #pragma once
 // Pass 5: what need not be computed again, or at all. Establishes constant_gradient, constant_hessian, zero_hessian and
-// psd_hessian of the module.
+// psd_hessian of the module, and its projection where that has a closed form.
 
 #include "codegen/module.h"
 

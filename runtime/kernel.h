@@ -13,7 +13,7 @@
 extern "C" {
 #endif
 
-#define ERGON_KERNEL_ABI 2
+#define ERGON_KERNEL_ABI 3
 
 enum ErgonRole { ERGON_PARAM = 0, ERGON_REST = 1, ERGON_LAG = 2 };
 
@@ -76,6 +76,11 @@ typedef struct ErgonKernel {
      their order is in codegen/principal.h; 12, 7 or 2 of them for 3, 2 or 1 vectors. */
   void (*principal)(const double* s, const double* e, const double* u, double* blocks);
   int operations_principal;
+
+  /* The projected Hessian where the compiler knows it in closed form, else 0: as hessian, with every eigenvalue x < 0
+     replaced by -x*negative (0: clamped, 1: its absolute value). changed[lanes] is positive where there was one. */
+  void (*projected)(const double* q, const double* e, const double* u, double negative, double* value, double* gradient,
+                    double* hessian, double* changed);
 } ErgonKernel;
 
 #ifdef __cplusplus

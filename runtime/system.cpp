@@ -246,6 +246,8 @@ std::vector<std::string> System::skipped() const {
       lines.push_back(name + ": Hessian is constant, assembled once");
     } else if (kernel.psd_hessian) {
       lines.push_back(name + ": Hessian is positive semi-definite, not projected");
+    } else if (kernel.projected != nullptr) {
+      lines.push_back(name + ": Hessian is projected in closed form, not decomposed");
     }
   }
   return lines;

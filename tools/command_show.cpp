@@ -25,6 +25,7 @@ std::string structure_of(const Module& module) {
   if (module.zero_hessian) return "Hessian is zero";
   std::string text = module.constant_hessian ? "Hessian is constant" : "Hessian depends on the state";
   if (module.psd_hessian) text += ", positive semi-definite by construction";
+  if (module.changed >= 0) text += ", projected in closed form";
   return text;
 }
 

@@ -118,11 +118,13 @@ void hessian_of(const Stencils& s, BlockRange range, const ChunkBlocks& blocks, 
   alignas(64) double q[S::kSize * kWidth], value[kWidth], by_q[S::kSize * kWidth];
   Vector3 points[S::kMost], by_point[S::kMost];
   const int n = S::points(s), pairs = n * (n + 1) / 2, batch = batch_of<S>(s), size = S::kPacked * kWidth;
-  const bool project = projection != kProjectNone && !s.kernel->psd_hessian;
+  const bool known = projection != kProjectNone && s.kernel->projected != nullptr;
+  const bool project = projection != kProjectNone && !s.kernel->psd_hessian && !known;
   const bool closed_form = project && s.kernel->principal != nullptr;
   const Negative mode = projection == kProjectAbsolute ? Negative::absolute : Negative::clamp;
   ProjectionBatch<S::kSize> indefinite(mode);
   const Differences differences = find_differences<S>(s);
+  alignas(64) double replaced[kWidth];
   long changed = 0;
   double* element = room.scratch + static_cast<long>(batch) * s.quadrature * size;
   for (int first = range.first; first < range.last; first += batch) {
@@ -137,7 +139,11 @@ void hessian_of(const Stencils& s, BlockRange range, const ChunkBlocks& blocks, 
       for (int p = 0; p < s.quadrature; ++p, packed += size) {
         const Weights<S> w(s, block, p);
         form_q<S>(s, w, points, q);
-        if (closed_form) {
+        if (known) {
+          const double negative = mode == Negative::absolute ? 1 : 0;
+          s.kernel->projected(q, data_of(s, block), s.uniforms, negative, value, by_q, packed, replaced);
+          changed += __builtin_popcount(bits(less(splat(0), load(replaced))) & ((1u << count) - 1));
+        } else if (closed_form) {
           s.kernel->gradient(q, data_of(s, block), s.uniforms, value, by_q);
           changed += closed_form_hessian<S>(s, block, count, q, mode, packed);
         } else {

@@ -64,7 +64,8 @@ std::vector<KernelValue> evaluate_kernel(const Energy& energy, const ErgonKernel
                                          const std::vector<Inputs>& states) {
   const int w = k.lanes, m = 3 * k.q_vectors;
   Lanes params(k.params), u(k.uniforms), raw(k.raw * w), e(k.elements * w), q(m * w), value(w), require(w),
-      gradient(m * w), hessian(m * (m + 1) / 2 * w);
+      gradient(m * w), hessian(m * (m + 1) / 2 * w), clamped(m * (m + 1) / 2 * w), absolute(m * (m + 1) / 2 * w),
+      changed(2 * w);
   std::vector<KernelValue> out;
   for (size_t first = 0; first < states.size(); first += static_cast<size_t>(w)) {
     int n = 0;
@@ -93,6 +94,9 @@ std::vector<KernelValue> evaluate_kernel(const Energy& energy, const ErgonKernel
     k.prepare_elements(raw.get(), u.get(), e.get());
     k.value(q.get(), e.get(), u.get(), value.get(), require.get());
     k.hessian(q.get(), e.get(), u.get(), value.get(), gradient.get(), hessian.get());
+    for (int mode = 0; mode < 2 && k.projected != nullptr; ++mode)
+      k.projected(q.get(), e.get(), u.get(), mode, value.get(), gradient.get(), (mode ? absolute : clamped).get(),
+                  changed.get() + mode * w);
     for (int lane = 0; lane < w && first + static_cast<size_t>(lane) < states.size(); ++lane) {
       KernelValue v;
       v.value = value[lane];
@@ -100,6 +104,11 @@ std::vector<KernelValue> evaluate_kernel(const Energy& energy, const ErgonKernel
       v.gradient.assign(static_cast<size_t>(n), 0);
       v.hessian.assign(static_cast<size_t>(n * n), 0);
       for (int i = 0; i < m * (m + 1) / 2; ++i) v.q_hessian.push_back(hessian[i * w + lane]);
+      for (int mode = 0; mode < 2 && k.projected != nullptr; ++mode) {
+        v.changed[mode] = changed[mode * w + lane] > 0;
+        for (int i = 0; i < m * (m + 1) / 2; ++i)
+          v.projected[mode].push_back((mode ? absolute : clamped)[i * w + lane]);
+      }
       auto h = [&](int a, int b) { return hessian[(a >= b ? a * (a + 1) / 2 + b : b * (b + 1) / 2 + a) * w + lane]; };
       auto at = [&](int r, int c) { return j[static_cast<size_t>(r)][static_cast<size_t>(c)]; };
       for (int c = 0; c < n; ++c)

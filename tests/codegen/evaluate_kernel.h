@@ -14,6 +14,9 @@ struct KernelValue {
   std::vector<double> gradient;   // over all dof components
   std::vector<double> hessian;    // n x n, column by column
   std::vector<double> q_hessian;  // lower triangle packed by rows
+  // Of the entry that projects in closed form, when there is one: [0] clamped, [1] absolute.
+  std::vector<double> projected[2];
+  bool changed[2] = {false, false};
 };
 
 // Loads the kernel for a width; kernels are kept in the build folder between runs.
