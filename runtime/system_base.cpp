@@ -39,8 +39,9 @@ bool SystemTerm::constant_changed() {
 }
 
 void System::Impl::update_base(Projection projection, BlockMatrix& matrix) {
-  bool changed = !base_known || projection != base_projection;
+  bool changed = !base_known;
   for (SystemTerm& term : terms) {
+    if (term.constant() && !term.kernel().psd_hessian && projection != base_projection) changed = true;
     if (term.constant() && term.constant_changed()) changed = true;
   }
   if (!changed) return;

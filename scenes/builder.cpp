@@ -192,6 +192,7 @@ StepOptions step_options(const Scene& scene) {
   out.projection = scene.solver.projection == "none"       ? Projection::none
                    : scene.solver.projection == "absolute" ? Projection::absolute
                                                            : Projection::clamp;
+  out.project_on_demand = scene.solver.projection == "progressive";
   out.accept_unconverged = scene.solver.accept_unconverged;
   return out;
 }

@@ -45,8 +45,9 @@ Section<SolverSettings> solver_section() {
                  "a step is solved when Newton's next change of any velocity is below this"),
       integer_key("max_iterations", &T::max_iterations, from_1, Need::optional,
                   "Newton iterations after which a step counts as not converged"),
-      choice_key("projection", &T::projection, {"clamp", "absolute", "none"},
-                 "what is done to negative eigenvalues of the Hessian of an element"),
+      choice_key("projection", &T::projection, {"clamp", "absolute", "progressive", "none"},
+                 "what is done to negative eigenvalues of the Hessian of an element; progressive: nothing until, in a "
+                 "time step, the sum has no factor or the direction does not descend, then clamp"),
       integer_key("friction_iterations", &T::friction_iterations, from_1, Need::optional,
                   "most solves per step, each with the normal forces of the one before"),
       number_key("friction_tolerance", &T::friction_tolerance, "1", not_negative, Need::optional,

@@ -59,6 +59,7 @@ double mean_diagonal(const BlockMatrix& matrix) {
 
 NewtonResult Newton::minimise(System& system, Eigen::Matrix3Xd& x, const NewtonOptions& options, Contact* contact) {
   NewtonResult result;
+  projecting_ = !options.on_demand;
   evaluate_value(system, x, contact, result);
   if (const std::string outside = unusable(result.evaluation); !outside.empty()) {
     result.reason = "the state at the start is outside " + outside;
@@ -77,7 +78,7 @@ NewtonResult Newton::minimise(System& system, Eigen::Matrix3Xd& x, const NewtonO
     }
 
     evaluate_hessian(system, x, options, result);
-    const double slope = find_direction(system, result);
+    const double slope = find_direction(system, x, options, result);
     if (!result.reason.empty()) return result;
     result.step_speed = largest_free_component(system, direction_).value / options.dt;
     if (result.iterations == 0) result.first_step_speed = result.step_speed;
@@ -85,6 +86,7 @@ NewtonResult Newton::minimise(System& system, Eigen::Matrix3Xd& x, const NewtonO
     const Progress progress = take_step(system, x, slope, options, contact, result);
     if (!progress.found) return result;
     ++result.iterations;
+    result.projected_iterations += projecting_ && options.projection != Projection::none;
     if (contact && contact->adapt(x)) {
       evaluate_value(system, x, contact, result);
       continue;
@@ -171,7 +173,7 @@ bool Newton::finishes_with_same_factor(System& system, Eigen::Matrix3Xd& x, cons
 void Newton::evaluate_hessian(System& system, const Eigen::Matrix3Xd& x, const NewtonOptions& options,
                               NewtonResult& result) {
   const Stopwatch watch(result.seconds.evaluate);
-  result.evaluation = system.hessian(x, options.projection, gradient_, matrix_);
+  result.evaluation = system.hessian(x, projecting_ ? options.projection : Projection::none, gradient_, matrix_);
   result.indefinite += result.evaluation.indefinite;
   result.residual = largest_free_component(system, gradient_).value;
 }
@@ -218,8 +220,10 @@ std::optional<double> Newton::solve_direction(System& system, NewtonResult& resu
   return slope;
 }
 
-// Factors H and solves; where H has no factor or the step does not descend, with a diagonal that grows. Returns g . p.
-double Newton::find_direction(System& system, NewtonResult& result) {
+// Factors H and solves; where H has no factor or the step does not descend, with H projected if that was left for when
+// it is needed, then with a diagonal that grows. Returns g . p.
+double Newton::find_direction(System& system, const Eigen::Matrix3Xd& x, const NewtonOptions& options,
+                              NewtonResult& result) {
   std::optional<int> failed;
   double shift = 0, tried = 0;
   for (int attempt = 0; attempt <= max_shifts && std::isfinite(shift); ++attempt) {
@@ -230,6 +234,11 @@ double Newton::find_direction(System& system, NewtonResult& result) {
     }
     if (!failed) {
       if (const std::optional<double> slope = solve_direction(system, result)) return *slope;
+    }
+    if (!projecting_) {
+      projecting_ = true;
+      evaluate_hessian(system, x, options, result);
+      continue;
     }
     ++result.shifts;
     tried = shift;

@@ -22,6 +22,12 @@ struct NewtonOptions {
   double dt = 1;            // s; 1 makes the tolerance one of displacement, for statics
   int max_iterations = 200;
   Projection projection = Projection::clamp;
+  // Project on demand: minimisation starts with Hessians as they are, and projects them, from then on, as soon as their
+  // sum has no factor or gives no direction of descent.
+  // Source: Longva et al. 2023, Pitfalls of Projection: A study of Newton-type solvers for incremental potentials. Held
+  // against others as project-on-demand Newton in Fernandez-Fernandez, Loeschner, Bender 2026, Progressively Projected
+  // Newton's Method, CGF 45(2).
+  bool on_demand = false;
   double sufficient_decrease = 1e-4;  // of the decrease that the gradient predicts
   int max_halvings = 60;
   // N/m, per vertex of the system: a lower bound of the Hessian's eigenvalues there (mass/dt^2). It bounds the next
@@ -50,10 +56,11 @@ struct NewtonResult {
   int halvings = 0;
   int shifts = 0;  // factorisations repeated with a larger diagonal
   int factorisations = 0;
-  int reused_factors = 0;    // last steps solved with the factor of the step before: not among the iterations
-  long indefinite = 0;       // Hessians changed by projection, summed over iterations
-  bool at_rounding = false;  // stopped where rounding, not the tolerance, ends the progress
-  Evaluation evaluation;     // at x
+  int projected_iterations = 0;  // with projected Hessians
+  int reused_factors = 0;        // last steps solved with the factor of the step before: not among the iterations
+  long indefinite = 0;           // Hessians changed by projection, summed over iterations
+  bool at_rounding = false;      // stopped where rounding, not the tolerance, ends the progress
+  Evaluation evaluation;         // at x
   NewtonSeconds seconds;
 };
 
@@ -78,7 +85,7 @@ class Newton {
   void evaluate_value(System& system, const Eigen::Matrix3Xd& x, Contact* contact, NewtonResult& result);
   void evaluate_gradient(System& system, const Eigen::Matrix3Xd& x, NewtonResult& result);
   void evaluate_hessian(System& system, const Eigen::Matrix3Xd& x, const NewtonOptions& options, NewtonResult& result);
-  double find_direction(System& system, NewtonResult& result);
+  double find_direction(System& system, const Eigen::Matrix3Xd& x, const NewtonOptions& options, NewtonResult& result);
   std::optional<double> solve_direction(System& system, NewtonResult& result);
   Progress take_step(System& system, Eigen::Matrix3Xd& x, double slope, const NewtonOptions& options, Contact* contact,
                      NewtonResult& result);
@@ -88,6 +95,7 @@ class Newton {
   void give_up_line_search(System& system, const Eigen::Matrix3Xd& x, Contact* contact, bool is_last,
                            NewtonResult& result);
 
+  bool projecting_ = true;  // Hessians of the present minimisation
   LinearSolver solver_;
   BlockMatrix matrix_;  // kept, with its pattern, from call to call
   Eigen::Matrix3Xd gradient_;

@@ -116,6 +116,7 @@ NewtonResult TimeStepper::solve(const Eigen::Matrix3Xd& start, Eigen::Matrix3Xd&
   newton.tolerance = options_.tolerance;
   newton.max_iterations = options_.max_iterations;
   newton.projection = options_.projection;
+  newton.on_demand = options_.project_on_demand;
   newton.curvature = mass_ / (options_.dt * options_.dt);
   const bool friction = ground_ && ground_->has_friction();
 

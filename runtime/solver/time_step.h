@@ -35,6 +35,7 @@ struct StepOptions {
   double friction_tolerance =
       0.05;  // no further solve when normal forces changed by less than this fraction of their sum
   Projection projection = Projection::clamp;
+  bool project_on_demand = false;   // NewtonOptions::on_demand
   bool accept_unconverged = false;  // go on from the best state found; the record still says so
 };
 

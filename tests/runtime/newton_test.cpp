@@ -83,6 +83,33 @@ TEST(Newton, LeavesAnUnstableStateDownhill) {
   EXPECT_NEAR(x(1, 2), x(1, 1) - (1 + 9.81 / 100), 1e-9);
 }
 
+TEST(Newton, ProjectsOnDemandFromWhereItIsNeeded) {
+  Chain chain;
+  chain.add_weight(1, Vector3d(0, -9.81, 0));
+  NewtonOptions options;
+  options.on_demand = true;
+  options.tolerance = 1e-10;
+  options.max_iterations = 300;
+  Matrix3Xd x(3, 3);
+  x << 0, 1e-3, -1e-3, 0, 0.9, 1.7, 0, 1e-4, 3e-4;
+  Newton newton;
+  const NewtonResult upright = newton.minimise(chain.system, x, options);
+  ASSERT_TRUE(upright.converged) << upright.reason;
+  EXPECT_GT(upright.projected_iterations, 0);
+  EXPECT_GT(upright.indefinite, 0);
+  EXPECT_EQ(upright.shifts, 0);
+  EXPECT_NEAR(x(1, 2), -(1 + 2 * 9.81 / 100) - (1 + 9.81 / 100), 1e-9);
+
+  // From a hanging state nothing has to be projected, and what the last minimisation needed is forgotten.
+  x.col(2).y() -= 0.05;
+  const NewtonResult hanging = newton.minimise(chain.system, x, options);
+  ASSERT_TRUE(hanging.converged) << hanging.reason;
+  EXPECT_GT(hanging.iterations, 0);
+  EXPECT_EQ(hanging.projected_iterations, 0);
+  EXPECT_EQ(hanging.indefinite, 0);
+  EXPECT_NEAR(x(1, 2), -(1 + 2 * 9.81 / 100) - (1 + 9.81 / 100), 1e-9);
+}
+
 TEST(Newton, ShiftsTheDiagonalWhereThereIsNoProjection) {
   Chain chain;
   chain.add_weight(1, Vector3d(0, -9.81, 0));
