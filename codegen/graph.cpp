@@ -287,7 +287,7 @@ std::vector<NodeId> reachable(const Graph& graph, std::span<const NodeId> roots)
 }
 
 std::string to_string(const Graph& graph, std::span<const NodeId> roots) {
-  static const char* const sources[] = {"param", "raw", "point", "q", "negative"};
+  static const char* const sources[] = {"param", "raw", "point", "q", "stretch", "negative"};
   std::string out;
   for (NodeId id : reachable(graph, roots)) {
     const Node& n = graph[id];

@@ -106,7 +106,8 @@ TEST(PrincipalPass, LeavesOutWhatNeedsNoProjectionOrIsNotIsotropic) {
   };
   EXPECT_EQ(principal("k*tr(F'*F)"), 0U);  // constant Hessian
   EXPECT_EQ(principal("k*F[0,0]^4"), 0U);  // not isotropic
-  EXPECT_EQ(principal("k*tr(F'*F)^2"), 12U);
+  EXPECT_EQ(principal("k*tr(F'*F)^2"), 0U);  // convex
+  EXPECT_EQ(principal("k*(tr(F'*F) - 3)^2"), 12U);
 }
 
 }  // namespace
