@@ -104,8 +104,8 @@ TEST(PrincipalPass, LeavesOutWhatNeedsNoProjectionOrIsNotIsotropic) {
         "density law solid\nframe fixed\nparam k Pa (0, inf) stiffness\nvalue " + value + "\n", "law.energy");
     return generate(energy, {}).module.principal.size();
   };
-  EXPECT_EQ(principal("k*tr(F'*F)"), 0U);  // constant Hessian
-  EXPECT_EQ(principal("k*F[0,0]^4"), 0U);  // not isotropic
+  EXPECT_EQ(principal("k*tr(F'*F)"), 0U);    // constant Hessian
+  EXPECT_EQ(principal("k*F[0,0]^4"), 0U);    // not isotropic
   EXPECT_EQ(principal("k*tr(F'*F)^2"), 0U);  // convex
   EXPECT_EQ(principal("k*(tr(F'*F) - 3)^2"), 12U);
 }
