@@ -201,6 +201,7 @@ Evaluation System::hessian(const Eigen::Matrix3Xd& x, Projection projection, Eig
     matrix.values().assign(matrix.row_index().size(), 0.0);
   }
   d.update_base(projection, matrix);
+  d.update_first();
   gradient.resize(3, d.vertices);
 #pragma omp parallel if (d.worth_threads())
   {

@@ -3,6 +3,7 @@
 // or a lag was set and the q-Hessians that follow from it are not bit by bit what they were.
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
 
 #include "runtime/system_data.h"
@@ -77,14 +78,60 @@ void System::Impl::update_base(Projection projection, BlockMatrix& matrix) {
   }
 }
 
+void System::Impl::update_first() {
+  const auto each_base_block = [&](auto f) {
+    for (int j = 0; j < pattern.block_rows(); ++j) {
+      const int diagonal = pattern.index_of(j, j);  // the column's first
+      for (int k = base_start[static_cast<size_t>(j)]; k < base_start[static_cast<size_t>(j) + 1]; ++k) {
+        f(static_cast<size_t>(k), diagonal + base_row[static_cast<size_t>(k)] / 3);
+      }
+    }
+  };
+  bool known = first_known && first_base.size() == base_row.size();
+  each_base_block([&](size_t k, int index) { known = known && first_base[k] == index; });
+  if (known) return;
+  first_known = true;
+  first_base.resize(base_row.size());
+  each_base_block([&](size_t k, int index) { first_base[k] = index; });
+  std::vector<char> written(pattern.blocks(), 0);
+  for (const int index : first_base) written[static_cast<size_t>(index)] = 1;
+  for (SystemTerm& term : terms) {
+    if (!term.assembled()) continue;
+    for (const int chunk : term.chunks) {  // those of one colour share no block
+      for (int i = term.block_start[static_cast<size_t>(chunk)]; i < term.block_start[static_cast<size_t>(chunk) + 1];
+           ++i) {
+        char& before = written[static_cast<size_t>(term.block_index[static_cast<size_t>(i)])];
+        int& stride = term.block_stride[static_cast<size_t>(i)];
+        stride = before != 0 ? std::abs(stride) : -std::abs(stride);
+        before = 1;
+      }
+    }
+  }
+  cleared_column.clear();
+  cleared_row.clear();
+  for (int j = 0; j < pattern.block_rows(); ++j) {
+    const auto first = static_cast<size_t>(pattern.index_of(j, j));
+    for (int row = 0; row < pattern.column_stride(j); row += 3) {
+      if (written[first + static_cast<size_t>(row) / 3] != 0) continue;
+      cleared_column.push_back(j);
+      cleared_row.push_back(row);
+    }
+  }
+}
+
 void System::Impl::start_matrix(BlockMatrix& matrix) const {
   double* values = matrix.values().data();
   const int* start = matrix.column_start().data();
+#pragma omp for schedule(static) nowait
+  for (size_t k = 0; k < cleared_row.size(); ++k) {
+    double* place = values + start[3 * cleared_column[k]] + cleared_row[k];
+    const int stride = matrix.column_stride(cleared_column[k]);
+    for (int c = 0; c < 3; ++c) std::fill_n(place + c * stride, 3, 0.0);
+  }
 #pragma omp for schedule(static)
   for (int j = 0; j < matrix.block_rows(); ++j) {
     double* column = values + start[3 * j];
     const int stride = matrix.column_stride(j);
-    std::memset(column, 0, 3 * static_cast<size_t>(stride) * sizeof(double));
     for (int k = base_start[static_cast<size_t>(j)]; k < base_start[static_cast<size_t>(j) + 1]; ++k) {
       const double* block = base_values.data() + 9 * static_cast<size_t>(k);
       double* place = column + base_row[static_cast<size_t>(k)];

@@ -39,6 +39,7 @@ struct SystemTerm {
   std::vector<int> block_start;  // per chunk, into the two below: lanes::ChunkBlocks
   std::vector<int> block_offset;
   std::vector<int> block_stride;
+  std::vector<int> block_index;  // of the block in the matrix
 
   // A constant Hessian: the versions that the assembled base is made of.
   unsigned long based_stencils = 0;
@@ -80,6 +81,13 @@ struct System::Impl {
   std::vector<int> base_row;        // of each block: scalar rows below the start of its column
   std::vector<double> base_values;  // 9 per block, column by column
 
+  // Every block of the matrix is written by the base, stored by the chunk that comes to it first, or in neither and
+  // cleared, so that the matrix is not zeroed beforehand. Known for one pattern and one set of base blocks.
+  bool first_known = false;
+  std::vector<int> first_base;      // the base's blocks, by index in the matrix
+  std::vector<int> cleared_column;  // block columns and scalar rows, as base_row, of the cleared blocks
+  std::vector<int> cleared_row;
+
   AlignedVector<double> x;  // 4 per vertex
   std::vector<RestConfiguration> configurations;
   AlignedVector<double> gradient;  // 4 per vertex
@@ -104,7 +112,9 @@ struct System::Impl {
   const double* points_of(const SystemTerm& term) const;
   // Gives a term whose q is F - I a configuration that agrees with its rest positions.
   void find_configuration(SystemTerm& term);
-  // Called by all threads of a team: zeroes the matrix but for the base.
+  // Finds who writes each block first, if pattern, slots or the base's blocks changed.
+  void update_first();
+  // Called by all threads of a team: writes the base and clears what no chunk stores.
   void start_matrix(BlockMatrix& matrix) const;
   bool worth_threads() const;
   Evaluation sum(bool margins) const;

@@ -116,10 +116,12 @@ bool SystemTerm::find_slots(const BlockMatrix& pattern, const std::vector<int>& 
   block_start.assign(1, 0);
   block_offset.clear();
   block_stride.clear();
+  block_index.clear();
   for (const std::vector<Found>& list : found) {
     for (const Found& f : list) {
       block_offset.push_back(f.offset);
       block_stride.push_back(f.stride);
+      block_index.push_back(f.index);
     }
     block_start.push_back(static_cast<int>(block_offset.size()));
   }
@@ -150,6 +152,7 @@ void System::Impl::build_pattern() {
   pattern.values() = {};
   pattern_known = true;
   base_known = false;
+  first_known = false;
 }
 
 void System::Impl::update_pattern() {
@@ -158,6 +161,7 @@ void System::Impl::update_pattern() {
     SystemTerm& term = terms[t];
     if (term.kernel().zero_hessian) continue;
     if (term.slotted_stencils == term.data().stencil_version && term.slotted_pattern == pattern.pattern_id()) continue;
+    first_known = false;
     if (term.find_slots(pattern, block_of)) continue;
     // A new coupling: all slots are to be found again in a pattern that has it.
     build_pattern();

@@ -127,12 +127,17 @@ inline void flush_sums(double* sums, const ChunkBlocks& blocks, double* values) 
   for (int i = 0; i < blocks.count; ++i, sums += kSumDoubles) {
     if (i + kAhead < blocks.count) {
       const double* ahead = values + blocks.offset[i + kAhead];
-      for (int c = 0; c < 3; ++c) __builtin_prefetch(ahead + static_cast<long>(c) * blocks.stride[i + kAhead], 1);
+      const long stride = __builtin_abs(blocks.stride[i + kAhead]);
+      for (int c = 0; c < 3; ++c) __builtin_prefetch(ahead + c * stride, 1);
     }
     double* place = values + blocks.offset[i];
-    for (int c = 0; c < 3; ++c, place += blocks.stride[i]) {
-      *reinterpret_cast<Pair*>(place) += *reinterpret_cast<const Pair*>(sums + 4 * c);
-      place[2] += sums[4 * c + 2];
+    const bool stored = blocks.stride[i] < 0;
+    const long stride = __builtin_abs(blocks.stride[i]);
+    for (int c = 0; c < 3; ++c, place += stride) {
+      const Pair old = stored ? Pair{} : *reinterpret_cast<const Pair*>(place);
+      const double last = stored ? 0 : place[2];
+      *reinterpret_cast<Pair*>(place) = old + *reinterpret_cast<const Pair*>(sums + 4 * c);
+      place[2] = last + sums[4 * c + 2];
       row_at(sums, 4 * c) = Row{};
     }
   }

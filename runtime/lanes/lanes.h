@@ -55,7 +55,7 @@ struct BlockRange {
 struct ChunkBlocks {
   int count;
   const int* offset;  // of the block's first value
-  const int* stride;  // from one of its columns to the next
+  const int* stride;  // from one of its columns to the next; negative where the values are stored, not added
 };
 
 constexpr int kSumDoubles = 12;  // of one matrix block while a chunk is summed: three columns of four
