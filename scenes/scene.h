@@ -99,7 +99,7 @@ struct SolverSettings : Located {
   int max_iterations = 200;
   int friction_iterations = 2;
   double friction_tolerance = 0.05;  // fraction of the sum of normal forces
-  std::string projection = "clamp";
+  std::string projection = "progressive";
   bool accept_unconverged = false;
 };
 
