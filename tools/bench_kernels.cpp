@@ -99,7 +99,9 @@ void bench_case(const Energy& energy, const std::string& case_name, const BenchK
       operations = kernel->operations_gradient;
     } else {
       seconds = median_seconds([&] { system.hessian(x, projection, gradient, hessian); });
-      operations = kernel->operations_hessian;
+      // A principal form is evaluated beside the gradient, in place of the Hessian.
+      const bool principal = projection != Projection::none && kernel->principal != nullptr;
+      operations = principal ? kernel->operations_gradient + kernel->operations_principal : kernel->operations_hessian;
     }
     const Potential& potential = system.potential(0);
     const int elements = potential.stencil_count();

@@ -195,7 +195,7 @@ void Newton::evaluate_gradient(System& system, const Eigen::Matrix3Xd& x, Newton
 
 // The gradient alone may show that the next step is below the tolerance.
 bool Newton::certainly_converged(const System& system, const NewtonOptions& options, NewtonResult& result) const {
-  if (options.curvature.size() == 0 || options.projection == Projection::none) return false;
+  if (options.curvature.size() == 0 || !projecting_ || options.projection == Projection::none) return false;
   const double bound = step_bound(system, gradient_, options.curvature) / options.dt;
   if (!(bound <= options.tolerance)) return false;
   result.step_speed = bound;

@@ -31,8 +31,8 @@ struct NewtonOptions {
   double sufficient_decrease = 1e-4;  // of the decrease that the gradient predicts
   int max_halvings = 60;
   // N/m, per vertex of the system: a lower bound of the Hessian's eigenvalues there (mass/dt^2). It bounds the next
-  // Newton step without solving for it, which saves the last factorisation. Empty: not used. Valid with projection
-  // only.
+  // Newton step without solving for it, which saves the last factorisation. Empty: not used. Only Hessians
+  // that are projected have such a bound: it is not asked while they are left as they are.
   Eigen::VectorXd curvature;
 };
 

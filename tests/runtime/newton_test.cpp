@@ -109,6 +109,27 @@ TEST(Newton, ProjectsOnDemandFromWhereItIsNeeded) {
   EXPECT_NEAR(x(1, 2), -(1 + 2 * 9.81 / 100) - (1 + 9.81 / 100), 1e-9);
 }
 
+// A bound of curvature that is far too large says that any state is the minimum; only projected Hessians are bound by
+// it.
+TEST(Newton, AsksTheBoundOfCurvatureOnlyOfProjectedHessians) {
+  for (const bool on_demand : {false, true}) {
+    Chain chain;
+    chain.add_weight(1, Vector3d(0, -9.81, 0));
+    NewtonOptions options;
+    options.on_demand = on_demand;
+    options.tolerance = 1e-10;
+    options.curvature = Eigen::VectorXd::Constant(3, 1e20);
+    Matrix3Xd x(3, 3);
+    x << 0, 0, 0, 0, -1.3, -2.4, 0, 0, 0;
+    const NewtonResult result = Newton().minimise(chain.system, x, options);
+    ASSERT_TRUE(result.converged) << result.reason;
+    EXPECT_EQ(result.iterations == 0, !on_demand);
+    if (on_demand) {
+      EXPECT_NEAR(x(1, 2), -(1 + 2 * 9.81 / 100) - (1 + 9.81 / 100), 1e-9);
+    }
+  }
+}
+
 TEST(Newton, ShiftsTheDiagonalWhereThereIsNoProjection) {
   Chain chain;
   chain.add_weight(1, Vector3d(0, -9.81, 0));
