@@ -16,7 +16,7 @@ namespace ergon {
 
 struct CompileOptions {
   std::string case_name{};  // one of the energy's cases; "" when it has none
-  int lanes = 1;            // 1, 4 or 8
+  int lanes = 1;            // 1, 2, 4 or 8
   std::vector<std::filesystem::path>
       read_only_caches{};         // searched first, e.g. the catalogue compiled with the program
   std::filesystem::path cache{};  // "" means KernelCache::user_folder()

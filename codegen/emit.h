@@ -30,7 +30,7 @@ struct Emitted {
   std::vector<EntryCost> costs;  // as the head of the source tells them
 };
 
-// The entry points of runtime/kernel.h for vectors of `lanes` doubles (1, 4 or 8).
+// The entry points of runtime/kernel.h for vectors of `lanes` doubles (1, 2, 4 or 8).
 Emitted emit(const Module& module, const Schedule& schedule, int lanes);
 
 }  // namespace ergon

@@ -24,8 +24,9 @@ std::string by_comparison(const std::string& type, const std::string& prefix, co
 // Bit l is set where lane l is above 0.
 std::string lanes_above(int lanes) {
   if (lanes == 1) return "enum { all_lanes = 1 };\nstatic inline int lanes_above(V a) { return a > 0.0; }\n";
-  std::string builtin =
-      lanes == 8 ? "__builtin_ia32_cmppd512_mask(a, V{}, 14, -1, 4)" : "__builtin_ia32_movmskpd256((V)(a > 0.0))";
+  std::string builtin = lanes == 8   ? "__builtin_ia32_cmppd512_mask(a, V{}, 14, -1, 4)"
+                        : lanes == 4 ? "__builtin_ia32_movmskpd256((V)(a > 0.0))"
+                                     : "__builtin_ia32_movmskpd((V)(a > 0.0))";
   return fmt::format(
       "enum {{ all_lanes = {} }};\nstatic inline int lanes_above(V a) {{\n"
       "#if defined(__x86_64__) && !defined(__clang__)\n  return {};\n#else\n  int bits = 0;\n"
@@ -67,7 +68,9 @@ std::string scalar_function(const std::string& type, const std::string& prefix, 
 }
 
 std::string vector_sqrt(int lanes) {
-  std::string builtin = lanes == 8 ? "__builtin_ia32_sqrtpd512_mask(a, a, -1, 4)" : "__builtin_ia32_sqrtpd256(a)";
+  std::string builtin = lanes == 8   ? "__builtin_ia32_sqrtpd512_mask(a, a, -1, 4)"
+                        : lanes == 4 ? "__builtin_ia32_sqrtpd256(a)"
+                                     : "__builtin_ia32_sqrtpd(a)";
   return fmt::format(
       "static inline V v_sqrt(V a) {{\n#if defined(__x86_64__) && !defined(__clang__)\n  return {};\n#else\n"
       "  for (int i = 0; i < {}; ++i) a[i] = __builtin_sqrt(a[i]);\n  return a;\n#endif\n}}\n",
@@ -81,14 +84,17 @@ std::string vector_function(int lanes, const std::string& name) {
       "static inline V v_{3}(V a{5}) {{ return _ZGV{0}N{1}{2}_{3}(a{6}); }}\n#else\n"
       "static inline V v_{3}(V a{5}) {{\n  for (int i = 0; i < {1}; ++i) a[i] = __builtin_{3}(a[i]{7});\n  return "
       "a;\n}}\n#endif\n",
-      lanes == 8 ? "e" : "d", lanes, two ? "vv" : "v", name, two ? ", V" : "", two ? ", V b" : "", two ? ", b" : "",
-      two ? ", b[i]" : "");
+      lanes == 8   ? "e"
+      : lanes == 4 ? "d"
+                   : "b",
+      lanes, two ? "vv" : "v", name, two ? ", V" : "", two ? ", V b" : "", two ? ", b" : "", two ? ", b[i]" : "");
 }
 
 }  // namespace
 
 std::string prelude(int lanes, std::set<std::string> used) {
-  if (lanes != 1 && lanes != 4 && lanes != 8) throw std::invalid_argument("prelude: lanes must be 1, 4 or 8");
+  if (lanes != 1 && lanes != 2 && lanes != 4 && lanes != 8)
+    throw std::invalid_argument("prelude: lanes must be 1, 2, 4 or 8");
   std::string out = lanes == 1
                         ? "typedef double V;\n"
                         : fmt::format("typedef double V __attribute__((vector_size({}), may_alias));\n", 8 * lanes);

@@ -6,6 +6,7 @@
 namespace ergon::lanes {
 
 const LaneOperations& operations_1();
+const LaneOperations& operations_2();
 #if defined(__x86_64__)
 const LaneOperations& operations_4();
 const LaneOperations& operations_8();
@@ -23,11 +24,12 @@ int best_lanes() {
     return 4;
   }
 #endif
-  return 1;
+  return 2;
 }
 
 const LaneOperations& lane_operations(int lanes) {
   if (lanes == 1) return operations_1();
+  if (lanes == 2) return operations_2();
 #if defined(__x86_64__)
   if (lanes == 4 && best_lanes() >= 4) return operations_4();
   if (lanes == 8 && best_lanes() >= 8) return operations_8();

@@ -5,6 +5,7 @@
 namespace ergon::lanes {
 
 const ProjectionTable& projection_table_1();
+const ProjectionTable& projection_table_2();
 #if defined(__x86_64__)
 const ProjectionTable& projection_table_4();
 const ProjectionTable& projection_table_8();
@@ -16,7 +17,7 @@ const ProjectionTable& projection_table(int lanes) {
   if (lanes == 4) return projection_table_4();
   if (lanes == 8) return projection_table_8();
 #endif
-  return projection_table_1();
+  return lanes == 2 ? projection_table_2() : projection_table_1();
 }
 
 }  // namespace ergon::lanes

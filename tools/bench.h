@@ -15,6 +15,7 @@ struct BenchKernels {
   std::string entry;                  // value, gradient, hessian; "": all three
   std::string projection = "clamp";
   std::vector<std::string> set;  // inputs by NAME=VALUE; the others are chosen within their ranges
+  int lanes = 0;                 // 0: as many as this machine has
   int threads = 1;
   int cells = 40;  // per edge of a cube
 };

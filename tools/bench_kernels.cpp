@@ -72,12 +72,23 @@ double median_seconds(const Call& call) {
   return *middle;
 }
 
+void check_lanes(int given) {
+  if (given == 0) return;
+  std::string usable;
+  for (const int width : lanes::kWidths) {
+    if (width > lanes::best_lanes()) break;
+    if (width == given) return;
+    usable += fmt::format("{}{}", usable.empty() ? "" : ", ", width);
+  }
+  throw InputError(fmt::format("--lanes: this machine has {}, not {}", usable, given));
+}
+
 void bench_case(const Energy& energy, const std::string& case_name, const BenchKernels& options, Rows& rows) {
   const std::vector<std::string> entries = {"value", "gradient", "hessian"};
   if (!options.entry.empty()) chosen("--entry", options.entry, entries);
   const Projection projection = projection_named(options.projection);
   const bool density = energy.kind == Energy::Kind::density;
-  const Kernel kernel = load_kernel(energy, case_name, lanes::best_lanes());
+  const Kernel kernel = load_kernel(energy, case_name, options.lanes == 0 ? lanes::best_lanes() : options.lanes);
   const Values values = usable_values(energy, kernel, options.element, read_assignments(energy, options.set));
   auto [mesh, stencils] = sample_of(energy, options.element, options.cells);
   const double cell = 1.0 / options.cells;
@@ -124,6 +135,7 @@ void bench_case(const Energy& energy, const std::string& case_name, const BenchK
 
 void bench_kernels(const BenchKernels& options, Rows& rows) {
   set_threads(options.threads);
+  check_lanes(options.lanes);
   for (const std::string& name : options.energies.empty() ? catalogue_names() : options.energies) {
     const Energy energy = find_energy(name);
     for (const std::string& case_name : cases_of(energy)) bench_case(energy, case_name, options, rows);

@@ -50,7 +50,7 @@ int compile_catalogue(const std::string& folder, std::ostream& out) {
   std::vector<CompileJob> jobs;
   for (const Energy& energy : energies) {
     for (const std::string& case_name : cases_of(energy)) {
-      for (int lanes : {1, 4, 8}) {
+      for (int lanes : lanes::kWidths) {
         CompileOptions options;
         options.case_name = case_name;
         options.lanes = lanes;

@@ -76,6 +76,25 @@ inline void to_rows(Real x, Real y, Real z, Row* lane) {
   lane[3] = __builtin_shufflevector(xy_odd, z_odd, 2, 3, 6, 7);
 }
 
+#elif ERGON_LANES == 2
+
+// Two lanes are half a row: rows are moved in halves.
+inline Vector3 gather(const double* rows, const int* vertices) {
+  const double *first = rows + 4L * vertices[0], *second = rows + 4L * vertices[1];
+  const Real xy0 = load(first), xy1 = load(second);
+  return {{__builtin_shufflevector(xy0, xy1, 0, 2), __builtin_shufflevector(xy0, xy1, 1, 3),
+           __builtin_shufflevector(load(first + 2), load(second + 2), 0, 2)}};
+}
+
+inline void to_rows(Real x, Real y, Real z, Row* lane) {
+  const Real zero{};
+  double* const rows = reinterpret_cast<double*>(lane);
+  store(rows, __builtin_shufflevector(x, y, 0, 2));
+  store(rows + 2, __builtin_shufflevector(z, zero, 0, 2));
+  store(rows + 4, __builtin_shufflevector(x, y, 1, 3));
+  store(rows + 6, __builtin_shufflevector(z, zero, 1, 3));
+}
+
 #else
 
 inline Vector3 gather(const double* rows, const int* vertices) {

@@ -82,6 +82,12 @@ struct LaneOperations {
                   double* gradient, double* values, ChunkResult*);
 };
 
+// Those there is code for, ascending. Two lanes are what every x86-64 processor has (SSE2), and ARM ones (NEON).
+#if defined(__x86_64__)
+constexpr int kWidths[] = {1, 2, 4, 8};
+#else
+constexpr int kWidths[] = {1, 2};
+#endif
 // The widest vectors this machine has.
 int best_lanes();
 // Throws std::invalid_argument when this machine or build lacks that width.

@@ -5,10 +5,12 @@
 // Everything is in an unnamed namespace: code for one width must never be merged with that of another by the linker.
 
 #ifndef ERGON_LANES
-#error "files in runtime/lanes are compiled once per width, with -DERGON_LANES=1, 4 or 8"
+#error "files in runtime/lanes are compiled once per width, with -DERGON_LANES=1, 2, 4 or 8"
 #endif
 #if (ERGON_LANES == 8 && defined(__AVX512F__) && defined(__AVX512DQ__)) || (ERGON_LANES == 4 && defined(__AVX__))
 #include <immintrin.h>
+#elif ERGON_LANES == 2 && defined(__SSE2__)
+#include <emmintrin.h>
 #endif
 
 namespace ergon::lanes {
@@ -89,6 +91,9 @@ inline Mask from_bits(unsigned lanes) {
 #if ERGON_LANES == 4 && defined(__AVX__)
 inline unsigned bits(Mask a) { return static_cast<unsigned>(_mm256_movemask_pd((Real)a)); }
 inline Real sqrt(Real a) { return _mm256_sqrt_pd(a); }
+#elif ERGON_LANES == 2 && defined(__SSE2__)
+inline unsigned bits(Mask a) { return static_cast<unsigned>(_mm_movemask_pd((Real)a)); }
+inline Real sqrt(Real a) { return _mm_sqrt_pd(a); }
 #else
 inline unsigned bits(Mask a) {
   unsigned b = 0;

@@ -44,7 +44,7 @@ std::vector<std::vector<double>> chain(const ErgonKernel& k, int n) {
 }  // namespace
 
 std::vector<int> test_widths() {
-  std::vector<int> out = {1};
+  std::vector<int> out = {1, 2};
 #if defined(__x86_64__)
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) out.push_back(4);
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) out.push_back(8);

@@ -192,7 +192,8 @@ struct JetKernel {
 template <class Law>
 Kernel kernel_of(int lanes) {
   if (lanes == 8) return JetKernel<Law, 8>::kernel();
-  return lanes == 4 ? JetKernel<Law, 4>::kernel() : JetKernel<Law, 1>::kernel();
+  if (lanes == 4) return JetKernel<Law, 4>::kernel();
+  return lanes == 2 ? JetKernel<Law, 2>::kernel() : JetKernel<Law, 1>::kernel();
 }
 
 struct LawDefaults {

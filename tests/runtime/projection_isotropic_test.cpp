@@ -128,7 +128,7 @@ TEST_P(IsotropicTest, NotFiniteStaysNotFinite) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Lanes, IsotropicTest, ::testing::Values(1, 4, 8));
+INSTANTIATE_TEST_SUITE_P(Lanes, IsotropicTest, ::testing::ValuesIn(lanes::kWidths));
 
 }  // namespace
 }  // namespace ergon::lanes

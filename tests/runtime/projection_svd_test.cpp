@@ -196,7 +196,7 @@ TEST_P(Svd3Test, NotFiniteStaysInItsLane) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Lanes, Svd3Test, ::testing::Values(1, 4, 8));
+INSTANTIATE_TEST_SUITE_P(Lanes, Svd3Test, ::testing::ValuesIn(lanes::kWidths));
 
 }  // namespace
 }  // namespace ergon::lanes

@@ -23,7 +23,7 @@ using Packed = AlignedVector<double>;
 
 std::vector<int> widths() {
   std::vector<int> w;
-  for (int lanes : {1, 4, 8}) {
+  for (int lanes : lanes::kWidths) {
     if (lanes <= best_lanes()) w.push_back(lanes);
   }
   return w;

@@ -44,7 +44,7 @@ void agrees_with_the_dense_sum() {
     stencils.insert(stencils.end(), order.begin(), order.begin() + 4);
     area.push_back(1 + 0.1 * i);
   }
-  for (const int width : {1, 4, 8}) {
+  for (const int width : lanes::kWidths) {
     if (width > lanes::best_lanes()) continue;
     for (const Projection projection : {Projection::clamp, Projection::none}) {
       SCOPED_TRACE(width);

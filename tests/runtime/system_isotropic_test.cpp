@@ -15,8 +15,8 @@ namespace {
 using namespace testing;  // NOLINT
 
 std::vector<int> usable_widths() {
-  std::vector<int> usable{1};
-  for (const int w : {4, 8}) {
+  std::vector<int> usable;
+  for (const int w : lanes::kWidths) {
     if (w <= lanes::best_lanes()) usable.push_back(w);
   }
   return usable;

@@ -16,8 +16,8 @@ using namespace testing;  // NOLINT
 constexpr double kTolerance = 2e-13;
 
 std::vector<int> widths() {
-  std::vector<int> usable{1};
-  for (const int w : {4, 8}) {
+  std::vector<int> usable;
+  for (const int w : lanes::kWidths) {
     if (w <= lanes::best_lanes()) usable.push_back(w);
   }
   return usable;

@@ -59,6 +59,14 @@ TEST_F(Bench, KernelsKnowElementsAndStencils) {
   EXPECT_EQ(edges[0]["elements"], 19);
 }
 
+TEST_F(Bench, KernelsOfFewerLanesThanTheMachineHas) {
+  const std::vector<Json> two = rows("kernels --energy spring --cells 1 --lanes 2");
+  ASSERT_EQ(two.size(), 3u);
+  for (const Json& row : two) EXPECT_EQ(row["lanes"], 2);
+  EXPECT_THAT(ergon("bench kernels --energy spring --lanes 3").err,
+              testing::MatchesRegex("ergon: error: --lanes: this machine has 1, 2[, 0-9]*, not 3\n"));
+}
+
 TEST_F(Bench, KernelsNameWhatIsWrong) {
   const Answer answer = ergon("bench kernels --energy neo_hookean --element tri3");
   EXPECT_EQ(answer.code, 2);

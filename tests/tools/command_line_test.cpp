@@ -127,7 +127,7 @@ TEST_F(CommandLine, CompilesOnceAndDumpsPasses) {
   write("my.energy", "# A spring to the origin.\nenergy my point\ndof x m\nparam k N/m (0, inf)\nvalue k/2*norm2(x)\n");
   const Answer first = ergon("compile my.energy");
   EXPECT_EQ(first.code, 0) << first.err;
-  EXPECT_THAT(first.out, MatchesRegex("my: [148] lanes; operations: value [0-9]+, gradient [0-9]+, hessian [0-9]+ "
+  EXPECT_THAT(first.out, MatchesRegex("my: [1248] lanes; operations: value [0-9]+, gradient [0-9]+, hessian [0-9]+ "
                                       "\\([0-9]+ divisions\\); compiled in [0-9.]+ s\n"));
   EXPECT_THAT(ergon("compile my.energy").out, HasSubstr("; cached, checked in "));
   EXPECT_GT(ergon("compile my.energy --dump differentiate").out.size(), 20u);
