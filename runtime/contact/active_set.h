@@ -1,13 +1,16 @@
 #pragma once
 // Narrow phase: the stencils that are within dhat of each other at x, by the parts that are nearest. It establishes
-// lists in which every stencil stands once, with its multiplicity, in an order that depends on the candidates alone.
-// Source: Li et al. 2020, Incremental Potential Contact, TOG 39(4): cases of distances and mollified parallel edges.
+// lists in which every stencil stands once, with its multiplicity, in ascending order.
+// It depends on the positions and on which pairs are within dhat, not on the order of candidates or on others among
+// them. Source: Li et al. 2020, Incremental Potential Contact, TOG 39(4): cases of distances and mollified parallel
+// edges.
 
 #include <Eigen/Core>
 #include <vector>
 
 #include "runtime/contact/broad_phase.h"
 #include "runtime/contact/collision_surface.h"
+#include "runtime/contact/merge_stencils.h"
 
 namespace ergon {
 
@@ -30,6 +33,10 @@ struct ActiveSet {
   ActiveList parallel_point_edge{4, {}, {}, {}};
   ActiveList parallel_point_point{4, {}, {}, {}};
   double smallest_gap = 0;  // m, beyond offsets, over all candidates; +inf without any
+
+  // What find_active keeps from call to call.
+  std::vector<FoundStencils> found;  // per thread
+  MergeRoom room;
 };
 
 // |cross(a, b)|^2 below which edges of lengths |A| and |B| at rest are mollified, over |A|^2 |B|^2.

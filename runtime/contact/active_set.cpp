@@ -1,0 +1,204 @@
+#include "runtime/contact/active_set.h"
+
+#include <omp.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <limits>
+
+#include "runtime/contact/distance.h"
+
+namespace ergon {
+
+namespace {
+
+using Eigen::Matrix3Xd;
+using Eigen::Vector3d;
+
+enum Case : size_t { kPointPoint, kPointEdge, kPointTriangle, kEdgeEdge, kParallelPointEdge, kParallelPointPoint };
+
+// 0 for a part that is an inside; else the end or corner it is, counted from 1.
+int corner_of(unsigned part) { return (part & (part - 1)) != 0 ? 0 : part == 4 ? 3 : static_cast<int>(part); }
+
+std::uint64_t pair_key(int a, int b) {
+  return static_cast<std::uint64_t>(std::min(a, b)) << 32 | static_cast<std::uint64_t>(std::max(a, b));
+}
+std::uint64_t key_of(int a) { return static_cast<std::uint64_t>(a); }
+
+// The pairs that one thread looks at.
+class Finder {
+ public:
+  Finder(const CollisionSurface& surface, const Matrix3Xd& x, const Matrix3Xd& X, double dhat, FoundStencils& found)
+      : surface_(surface), x_(x), X_(X), dhat_(dhat), found_(found) {}
+
+  void point_triangle(int point, int triangle) {
+    const int p = surface_.points[static_cast<size_t>(point)];
+    const auto& t = surface_.triangles[static_cast<size_t>(triangle)];
+    const PointTriangleDistance d = point_triangle_distance(at(p), at(t[0]), at(t[1]), at(t[2]));
+    if (!near(d.gap2, p, t[0])) return;
+    switch (d.part) {
+      case 7:
+        return found_[kPointTriangle].push_back({point, key_of(triangle)});
+      case 3:
+      case 5:
+      case 6:
+        return add_point_edge(p, t[d.part == 6 ? 1 : 0], t[d.part == 3 ? 1 : 2]);
+      default:
+        return add_point_point(p, t[static_cast<size_t>(corner_of(d.part) - 1)]);
+    }
+  }
+
+  void edge_edge(int edge_a, int edge_b) {
+    const auto &a = surface_.edges[static_cast<size_t>(edge_a)], &b = surface_.edges[static_cast<size_t>(edge_b)];
+    const EdgeEdgeDistance d = edge_edge_distance(at(a[0]), at(a[1]), at(b[0]), at(b[1]));
+    if (!near(d.gap2, a[0], b[0])) return;
+    if (d.part_a == 3 && d.part_b == 3) return found_[kEdgeEdge].push_back({edge_a, key_of(edge_b)});
+    const bool parallel = mollified(a, b);
+    const auto end_a = static_cast<size_t>(d.part_a) - 1, end_b = static_cast<size_t>(d.part_b) - 1;
+    if (d.part_a != 3 && d.part_b != 3) {
+      if (!parallel) return add_point_point(a[end_a], b[end_b]);
+      found_[kParallelPointPoint].push_back({edge_a, key_of(edge_b) << 2 | end_a << 1 | end_b});
+    } else if (d.part_a != 3) {
+      if (!parallel) return add_point_edge(a[end_a], b[0], b[1]);
+      found_[kParallelPointEdge].push_back({edge_a, key_of(edge_b) << 2 | end_a});
+    } else {
+      if (!parallel) return add_point_edge(b[end_b], a[0], a[1]);
+      found_[kParallelPointEdge].push_back({edge_a, key_of(edge_b) << 2 | 2 | end_b});
+    }
+  }
+
+  void point_edge(int point, int edge) {
+    const int p = surface_.points[static_cast<size_t>(point)];
+    const auto& e = surface_.edges[static_cast<size_t>(edge)];
+    const PointEdgeDistance d = point_edge_distance(at(p), at(e[0]), at(e[1]));
+    if (!near(d.gap2, p, e[0])) return;
+    if (d.part == 3) return add_point_edge(p, e[0], e[1]);
+    add_point_point(p, e[d.part - 1]);
+  }
+
+  void point_point(int point_a, int point_b) {
+    const int p = surface_.points[static_cast<size_t>(point_a)], q = surface_.points[static_cast<size_t>(point_b)];
+    if (near((x_.col(p) - x_.col(q)).squaredNorm(), p, q)) add_point_point(p, q);
+  }
+
+  double smallest_gap() const { return smallest_; }
+
+ private:
+  Vector3d at(int vertex) const { return x_.col(vertex); }
+
+  bool near(double gap2, int p, int q) {
+    const double offset = surface_.offset(object_of(p), object_of(q));
+    const double limit = dhat_ + offset, smallest = smallest_ + offset;
+    if (smallest >= 0 && gap2 < smallest * smallest) smallest_ = std::sqrt(gap2) - offset;
+    return gap2 < limit * limit;
+  }
+
+  int object_of(int vertex) const { return surface_.object[static_cast<size_t>(vertex)]; }
+
+  bool mollified(const std::array<int, 2>& a, const std::array<int, 2>& b) const {
+    const double sine = (x_.col(a[1]) - x_.col(a[0])).cross(x_.col(b[1]) - x_.col(b[0])).squaredNorm();
+    return sine <
+           kMollified * (X_.col(a[1]) - X_.col(a[0])).squaredNorm() * (X_.col(b[1]) - X_.col(b[0])).squaredNorm();
+  }
+
+  void add_point_edge(int p, int e0, int e1) { found_[kPointEdge].push_back({p, pair_key(e0, e1)}); }
+  void add_point_point(int p, int q) { found_[kPointPoint].push_back({std::min(p, q), key_of(std::max(p, q))}); }
+
+  const CollisionSurface& surface_;
+  const Matrix3Xd &x_, &X_;
+  double dhat_;
+  FoundStencils& found_;
+  double smallest_ = std::numeric_limits<double>::infinity();
+};
+
+// One list from what the threads have found; vertices(bin, key) are those of a stencil.
+template <class Vertices>
+void fill(const CollisionSurface& surface, Case which, size_t bins, const Vertices& vertices, ActiveSet& active,
+          ActiveList& list) {
+  list.vertices.clear();
+  list.multiplicity.clear();
+  list.offset.clear();
+  merge_stencils(active.found, which, bins, active.room, [&](int bin, std::uint64_t key, int count) {
+    const auto stencil = vertices(static_cast<size_t>(bin), key);
+    list.vertices.insert(list.vertices.end(), stencil.begin(), stencil.end());
+    list.multiplicity.push_back(count);
+    list.offset.push_back(surface.offset(surface.object[static_cast<size_t>(stencil.front())],
+                                         surface.object[static_cast<size_t>(stencil.back())]));
+  });
+}
+
+void fill_lists(const CollisionSurface& surface, ActiveSet& active) {
+  const size_t vertices = surface.object.size(), edges = surface.edges.size();
+  const auto low = [](std::uint64_t key) { return static_cast<int>(key & 0xffffffffu); };
+  fill(
+      surface, kPointPoint, vertices,
+      [&](size_t p, std::uint64_t key) {
+        return std::array{static_cast<int>(p), low(key)};
+      },
+      active, active.point_point);
+  fill(
+      surface, kPointEdge, vertices,
+      [&](size_t p, std::uint64_t key) {
+        return std::array{static_cast<int>(p), static_cast<int>(key >> 32), low(key)};
+      },
+      active, active.point_edge);
+  fill(
+      surface, kPointTriangle, surface.points.size(),
+      [&](size_t point, std::uint64_t key) {
+        const auto& t = surface.triangles[key];
+        return std::array{surface.points[point], t[0], t[1], t[2]};
+      },
+      active, active.point_triangle);
+  const auto edge_edge = [&](size_t a, std::uint64_t b, bool turn_a, bool turn_b) {
+    const auto &ea = surface.edges[a], &eb = surface.edges[b];
+    return std::array{ea[turn_a], ea[!turn_a], eb[turn_b], eb[!turn_b]};
+  };
+  fill(
+      surface, kEdgeEdge, edges, [&](size_t a, std::uint64_t b) { return edge_edge(a, b, false, false); }, active,
+      active.edge_edge);
+  fill(
+      surface, kParallelPointEdge, edges,
+      [&](size_t a, std::uint64_t key) {
+        const bool of_b = (key & 2) != 0, second = (key & 1) != 0;
+        return of_b ? edge_edge(key >> 2, a, second, false) : edge_edge(a, key >> 2, second, false);
+      },
+      active, active.parallel_point_edge);
+  fill(
+      surface, kParallelPointPoint, edges,
+      [&](size_t a, std::uint64_t key) { return edge_edge(a, key >> 2, (key & 2) != 0, (key & 1) != 0); }, active,
+      active.parallel_point_point);
+}
+
+// The range of 0 to count that thread `thread` of `threads` looks at.
+template <class Call>
+void share(size_t count, size_t thread, size_t threads, const Call& call) {
+  for (size_t i = count * thread / threads; i < count * (thread + 1) / threads; ++i) call(i);
+}
+
+}  // namespace
+
+void find_active(const CollisionSurface& surface, const Candidates& candidates, const Matrix3Xd& x, const Matrix3Xd& X,
+                 double dhat, ActiveSet& active) {
+  active.found.resize(std::max(active.found.size(), static_cast<size_t>(omp_get_max_threads())));
+  for (FoundStencils& found : active.found) {
+    for (auto& each : found) each.clear();
+  }
+  double smallest = std::numeric_limits<double>::infinity();
+#pragma omp parallel reduction(min : smallest)
+  {
+    const auto thread = static_cast<size_t>(omp_get_thread_num()), threads = static_cast<size_t>(omp_get_num_threads());
+    Finder finder(surface, x, X, dhat, active.found[thread]);
+    const auto each = [&](const auto& pairs, const auto& call) {
+      share(pairs.size(), thread, threads, [&](size_t i) { call(pairs[i][0], pairs[i][1]); });
+    };
+    each(candidates.point_triangle, [&](int p, int t) { finder.point_triangle(p, t); });
+    each(candidates.edge_edge, [&](int a, int b) { finder.edge_edge(a, b); });
+    each(candidates.point_edge, [&](int p, int e) { finder.point_edge(p, e); });
+    each(candidates.point_point, [&](int p, int q) { finder.point_point(p, q); });
+    smallest = finder.smallest_gap();
+  }
+  active.smallest_gap = smallest;
+  fill_lists(surface, active);
+}
+
+}  // namespace ergon

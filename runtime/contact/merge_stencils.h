@@ -1,0 +1,55 @@
+#pragma once
+// Stencils found in any order and any number of times become lists in which each stands once, counted, in ascending
+// order.
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace ergon {
+
+// A stencil by two numbers; bins are few enough to be counted.
+struct StencilKey {
+  int bin;
+  std::uint64_t key;
+};
+
+// By case.
+using FoundStencils = std::array<std::vector<StencilKey>, 6>;
+
+// Room that is kept from one merge to the next.
+struct MergeRoom {
+  std::vector<size_t> starts;
+  std::vector<std::uint64_t> keys;
+};
+
+// Calls emit(bin, key, count) for each stencil of a case that any of `found` has: bins in ascending order, keys within
+// one.
+template <class Emit>
+void merge_stencils(const std::vector<FoundStencils>& found, size_t which, size_t bins, MergeRoom& room,
+                    const Emit& emit) {
+  room.starts.assign(bins + 2, 0);
+  for (const FoundStencils& part : found) {
+    for (const StencilKey& each : part[which]) ++room.starts[static_cast<size_t>(each.bin) + 2];
+  }
+  for (size_t bin = 2; bin < bins + 2; ++bin) room.starts[bin] += room.starts[bin - 1];
+  room.keys.resize(room.starts[bins + 1]);
+  // Each start advances to its end while its bin is filled.
+  for (const FoundStencils& part : found) {
+    for (const StencilKey& each : part[which]) room.keys[room.starts[static_cast<size_t>(each.bin) + 1]++] = each.key;
+  }
+  for (size_t bin = 0; bin < bins; ++bin) {
+    std::uint64_t* const first = room.keys.data() + room.starts[bin];
+    std::uint64_t* const last = room.keys.data() + room.starts[bin + 1];
+    std::sort(first, last);
+    for (const std::uint64_t* at = first; at != last;) {
+      const std::uint64_t key = *at;
+      int count = 0;
+      for (; at != last && *at == key; ++at) ++count;
+      emit(static_cast<int>(bin), key, count);
+    }
+  }
+}
+
+}  // namespace ergon
