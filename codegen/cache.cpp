@@ -29,8 +29,12 @@ std::string read_file(const fs::path& file) {
   return out.str();
 }
 
+std::string seal(const std::string& content) { return std::string(kSeal) + content_hash(content); }
+
+constexpr size_t kSealSize = kSeal.size() + 32;
+
 bool sealed(const std::string& bytes) {
-  size_t tail = kSeal.size() + 32;
+  size_t tail = kSealSize;
   if (bytes.size() <= tail) return false;
   size_t content = bytes.size() - tail;
   return bytes.compare(content, kSeal.size(), kSeal) == 0 &&
@@ -52,6 +56,11 @@ void write_file(const fs::path& file, const std::string& bytes) {
   out << bytes;
   out.close();
   if (!out) throw std::runtime_error(fmt::format("cannot write {}; is the disk full?", file.string()));
+}
+
+// Of a file that is being written.
+std::string unique_name(const std::string& key) {
+  return fmt::format("{}.{}-{:x}", key, getpid(), std::chrono::steady_clock::now().time_since_epoch().count());
 }
 
 std::string name_of(const std::string& key, const std::string& maker) { return key + "-" + maker + ".so"; }
@@ -94,6 +103,31 @@ std::optional<LoadedKernel> KernelCache::load(const std::string& key, const std:
   return std::nullopt;
 }
 
+std::optional<std::string> KernelCache::note(const std::string& key) const {
+  for (const fs::path& folder : folders_) {
+    std::string bytes = read_file(folder / (key + ".note"));
+    if (sealed(bytes)) return bytes.substr(0, bytes.size() - kSealSize);
+  }
+  return std::nullopt;
+}
+
+void KernelCache::keep_note(const std::string& key, const std::string& text) const {
+  for (const fs::path& folder : folders_) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    const fs::path unique = folder / unique_name(key);
+    try {
+      write_file(unique, text + seal(text));
+    } catch (const std::exception&) {
+      fs::remove(unique, error);
+      continue;
+    }
+    fs::rename(unique, folder / (key + ".note"), error);
+    if (!error) return;
+    fs::remove(unique, error);
+  }
+}
+
 LoadedKernel KernelCache::make(const std::string& key, const std::string& maker, const std::string& source, int lanes,
                                const std::string& compiler, double* compile_seconds) const {
   const std::string name = name_of(key, maker);
@@ -105,8 +139,7 @@ LoadedKernel KernelCache::make(const std::string& key, const std::string& maker,
       tried += " " + folder.string();
       continue;
     }
-    std::string unique =
-        fmt::format("{}.{}-{:x}", key, getpid(), std::chrono::steady_clock::now().time_since_epoch().count());
+    const std::string unique = unique_name(key);
     fs::path text = folder / (unique + ".cpp"), library = folder / (unique + ".tmp");
     struct Cleanup {
       fs::path a, b;
@@ -122,7 +155,7 @@ LoadedKernel KernelCache::make(const std::string& key, const std::string& maker,
     if (compile_seconds)
       *compile_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     std::string bytes = read_file(library);
-    write_file(library, bytes + std::string(kSeal) + content_hash(bytes));
+    write_file(library, bytes + seal(bytes));
     fs::rename(library, folder / name);
     fs::rename(text, (folder / name).replace_extension(".cpp"));
     if (auto kernel = open_library(folder / name)) return *kernel;

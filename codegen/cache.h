@@ -1,7 +1,7 @@
 #pragma once
-// Kernel libraries kept on disk by the hash of everything that determines them. A file ends with a hash of its own
-// content, so that one that is damaged or half-written is found out and made again; files appear whole, by renaming, so
-// that processes may share a folder.
+// Kernel libraries, and notes on them, kept on disk by the hash of everything that determines them. A file ends with a
+// hash of its own content, so that one that is damaged or half-written is found out and made again; files appear whole,
+// by renaming, so that processes may share a folder.
 
 #include <filesystem>
 #include <memory>
@@ -30,6 +30,11 @@ class KernelCache {
   // The kernel of that key made by that compiler (compiler_identity), if a sound file for this machine is there; with
   // "", one made by any.
   std::optional<LoadedKernel> load(const std::string& key, const std::string& maker) const;
+
+  // A short text kept under a key, sealed as libraries are; nothing when no folder has a sound one.
+  std::optional<std::string> note(const std::string& key) const;
+  // Keeps it in the first folder that can be written, if there is one.
+  void keep_note(const std::string& key, const std::string& text) const;
 
   // Builds a library from `source` with that key and loads it. Throws BuildError; std::runtime_error when no folder is
   // writable.

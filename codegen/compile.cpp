@@ -5,6 +5,7 @@
 #include "codegen/build.h"
 #include "codegen/cache.h"
 #include "codegen/differentiate.h"
+#include "codegen/front_key.h"
 #include "codegen/frontier.h"
 #include "codegen/hash.h"
 #include "codegen/lower.h"
@@ -25,6 +26,10 @@ std::string cache_key(const std::string& source, const std::string& compiler, in
   std::string all = source + '\0' + compiler;
   for (const std::string& flag : compiler_flags(lanes)) all += '\0' + flag;
   return content_hash(all);
+}
+
+std::string note_of(const PreparedKernel& prepared) {
+  return to_text({prepared.key, prepared.kernel.source_bytes, prepared.kernel.counts}, prepared.front);
 }
 
 }  // namespace
@@ -58,44 +63,60 @@ Generated generate(const Energy& energy, const CompileOptions& options) {
 }
 
 PreparedKernel prepare(const Energy& energy, const CompileOptions& options) {
-  Generated generated = generate(energy, options);
   PreparedKernel out;
-  out.kernel.counts = generated.counts;
-  out.kernel.times = generated.times;
   out.cache = options.cache.empty() ? KernelCache::user_folder() : options.cache;
   out.compiler = options.compiler.empty() ? default_compiler() : options.compiler;
   out.maker = compiler_identity(out.compiler);
   out.lanes = options.lanes;
+  out.front = front_key(energy, {options.case_name, options.lanes, options.stable, out.compiler});
+  const KernelCache given(options.read_only_caches), own({out.cache});
+  const auto find = [&](const std::string& key) {
+    const auto start = std::chrono::steady_clock::now();
+    // What came with the program serves whatever compiler is here.
+    std::optional<LoadedKernel> found = given.load(key, out.maker);
+    if (!found) found = given.load(key, "");
+    if (!found) found = own.load(key, out.maker);
+    if (found) {
+      out.kernel.library = found->library;
+      out.kernel.table = found->table;
+      out.kernel.cached = true;
+    }
+    out.kernel.times.load += seconds_since(start);
+  };
+  if (options.use_cached && !options.dump) {
+    for (const KernelCache* cache : {&given, &own}) {
+      const std::optional<std::string> text = cache->note(out.front);
+      const std::optional<KernelNote> note = text ? note_from(*text, out.front) : std::nullopt;
+      if (!note) continue;
+      find(note->key);
+      out.kernel.counts = note->counts;
+      out.kernel.source_bytes = note->source_bytes;
+      if (out.kernel.cached) return out;
+    }
+  }
+  Generated generated = generate(energy, options);
+  out.kernel.counts = generated.counts;
+  out.kernel.source_bytes = generated.source.size();
+  generated.times.load = out.kernel.times.load;
+  out.kernel.times = generated.times;
   out.key = energy.name + "-w" + std::to_string(options.lanes) + "-" +
             cache_key(generated.source, out.compiler, options.lanes);
-
-  auto start = std::chrono::steady_clock::now();
-  std::optional<LoadedKernel> found;
-  if (options.use_cached) {
-    // What came with the program serves whatever compiler is here.
-    const KernelCache given(options.read_only_caches);
-    found = given.load(out.key, out.maker);
-    if (!found) found = given.load(out.key, "");
-    if (!found) found = KernelCache({out.cache}).load(out.key, out.maker);
-  }
-  out.kernel.cached = found.has_value();
-  if (found) {
-    out.kernel.library = found->library;
-    out.kernel.table = found->table;
-  }
-  out.kernel.times.load = seconds_since(start);
-  out.kernel.source = std::move(generated.source);
+  if (options.use_cached) find(out.key);
+  if (out.kernel.cached) own.keep_note(out.front, note_of(out));
+  out.source = std::move(generated.source);
   return out;
 }
 
 CompiledKernel finish(PreparedKernel prepared) {
-  CompiledKernel out = std::move(prepared.kernel);
-  if (out.cached) return out;
+  if (prepared.kernel.cached) return std::move(prepared.kernel);
+  CompileTimes& times = prepared.kernel.times;
+  const KernelCache cache({prepared.cache});
   auto start = std::chrono::steady_clock::now();
   const LoadedKernel made =
-      KernelCache({prepared.cache})
-          .make(prepared.key, prepared.maker, out.source, prepared.lanes, prepared.compiler, &out.times.compile);
-  out.times.load += seconds_since(start) - out.times.compile;
+      cache.make(prepared.key, prepared.maker, prepared.source, prepared.lanes, prepared.compiler, &times.compile);
+  times.load += seconds_since(start) - times.compile;
+  cache.keep_note(prepared.front, note_of(prepared));
+  CompiledKernel out = std::move(prepared.kernel);
   out.library = made.library;
   out.table = made.table;
   return out;

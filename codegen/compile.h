@@ -48,7 +48,7 @@ struct Generated {
 struct CompiledKernel {
   std::shared_ptr<void> library;  // keeps the code loaded
   const ErgonKernel* table = nullptr;
-  std::string source;
+  size_t source_bytes = 0;
   OperationCounts counts;
   CompileTimes times;
   bool cached = false;
@@ -57,10 +57,12 @@ struct CompiledKernel {
 // `energy` must outlive the result's module. Throws SourceError for what cannot be compiled.
 Generated generate(const Energy& energy, const CompileOptions& options);
 
-// A kernel that was generated and, where a cache holds it, loaded; else what building it takes.
+// A kernel that a cache holds, loaded; else what building it takes.
 struct PreparedKernel {
   CompiledKernel kernel;
-  std::string key, compiler, maker;
+  std::string source;      // "" when it was found without being generated
+  std::string front, key;  // codegen/front_key.h; of the library
+  std::string compiler, maker;
   std::filesystem::path cache;
   int lanes = 1;
 };

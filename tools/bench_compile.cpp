@@ -56,7 +56,7 @@ Timing time_of(const std::string& name, const std::string& case_name, const std:
   timing.compile = t.compile;
   timing.load = t.load;
   timing.total = seconds(start);
-  timing.source_bytes = kernel.source.size();
+  timing.source_bytes = kernel.source_bytes;
   timing.cached = kernel.cached;
   return timing;
 }

@@ -45,7 +45,7 @@ TEST_F(CompileAll, KernelsComeInTheOrderOfTheJobs) {
     for (size_t i = 0; i < 3; ++i) {
       EXPECT_EQ(kernels[i].table->energy, energies[i].name);
       EXPECT_EQ(kernels[i].cached, cached);
-      EXPECT_EQ(kernels[i].source, generate(energies[i], options).source);
+      EXPECT_EQ(kernels[i].source_bytes, generate(energies[i], options).source.size());
     }
   }
   EXPECT_TRUE(compile_all({}).empty());

@@ -60,11 +60,11 @@ TEST_F(CompileTest, SecondTimeComesFromTheCache) {
   EXPECT_DOUBLE_EQ(again.table->weights[0], -again.table->weights[1]);
 }
 
-TEST_F(CompileTest, OnlyTheLibraryAndItsSourceAreLeft) {
+TEST_F(CompileTest, OnlyTheLibraryItsSourceAndANoteAreLeft) {
   compile(energy, options);
   std::vector<std::string> extensions;
   for (const auto& entry : fs::directory_iterator(folder)) extensions.push_back(entry.path().extension());
-  EXPECT_THAT(extensions, ::testing::UnorderedElementsAre(".so", ".cpp"));
+  EXPECT_THAT(extensions, ::testing::UnorderedElementsAre(".so", ".cpp", ".note"));
 }
 
 TEST_F(CompileTest, DamagedFileIsMadeAgain) {
