@@ -7,6 +7,8 @@
 #include <limits>
 
 #include "runtime/contact/distance.h"
+#include "runtime/lanes/distances.h"
+#include "runtime/lanes/lanes.h"
 
 namespace ergon {
 
@@ -17,8 +19,10 @@ using Eigen::Vector3d;
 
 enum Case : size_t { kPointPoint, kPointEdge, kPointTriangle, kEdgeEdge, kParallelPointEdge, kParallelPointPoint };
 
-// 0 for a part that is an inside; else the end or corner it is, counted from 1.
-int corner_of(unsigned part) { return (part & (part - 1)) != 0 ? 0 : part == 4 ? 3 : static_cast<int>(part); }
+template <size_t N>
+const int (*plain(const std::array<int, N>* items))[N] {
+  return reinterpret_cast<const int(*)[N]>(items);
+}
 
 std::uint64_t pair_key(int a, int b) {
   return static_cast<std::uint64_t>(std::min(a, b)) << 32 | static_cast<std::uint64_t>(std::max(a, b));
@@ -31,42 +35,49 @@ class Finder {
   Finder(const CollisionSurface& surface, const Matrix3Xd& x, const Matrix3Xd& X, double dhat, FoundStencils& found)
       : surface_(surface), x_(x), X_(X), dhat_(dhat), found_(found) {}
 
-  void point_triangle(int point, int triangle) {
-    const int p = surface_.points[static_cast<size_t>(point)];
-    const auto& t = surface_.triangles[static_cast<size_t>(triangle)];
-    const PointTriangleDistance d = point_triangle_distance(at(p), at(t[0]), at(t[1]), at(t[2]));
-    if (!near(d.gap2, p, t[0])) return;
-    switch (d.part) {
-      case 7:
-        return found_[kPointTriangle].push_back({point, key_of(triangle)});
-      case 3:
-      case 5:
-      case 6:
-        return add_point_edge(p, t[d.part == 6 ? 1 : 0], t[d.part == 3 ? 1 : 2]);
-      default:
-        return add_point_point(p, t[static_cast<size_t>(corner_of(d.part) - 1)]);
+  // Up to kDistances pairs.
+  void point_triangles(const std::array<int, 2>* pairs, int count) {
+    operations_.point_triangle(x_.data(), surface_.points.data(), plain(surface_.triangles.data()), plain(pairs), count,
+                               room_);
+    for (int i = 0; i < count; ++i) {
+      const auto [point, triangle] = pairs[i];
+      const int p = surface_.points[static_cast<size_t>(point)];
+      const auto& t = surface_.triangles[static_cast<size_t>(triangle)];
+      double gap2 = room_.gap2[i];
+      auto part = static_cast<unsigned>(room_.part[i]);
+      if (!(gap2 >= 0)) {
+        const PointTriangleDistance d = point_triangle_distance(at(p), at(t[0]), at(t[1]), at(t[2]));
+        gap2 = d.gap2, part = d.part;
+      }
+      if (near(gap2, p, t[0])) add_point_triangle(point, triangle, part);
     }
   }
 
-  void edge_edge(int edge_a, int edge_b) {
-    const auto &a = surface_.edges[static_cast<size_t>(edge_a)], &b = surface_.edges[static_cast<size_t>(edge_b)];
-    const EdgeEdgeDistance d = edge_edge_distance(at(a[0]), at(a[1]), at(b[0]), at(b[1]));
-    if (!near(d.gap2, a[0], b[0])) return;
-    if (d.part_a == 3 && d.part_b == 3) return found_[kEdgeEdge].push_back({edge_a, key_of(edge_b)});
-    const bool parallel = mollified(a, b);
-    const auto end_a = static_cast<size_t>(d.part_a) - 1, end_b = static_cast<size_t>(d.part_b) - 1;
-    if (d.part_a != 3 && d.part_b != 3) {
-      if (!parallel) return add_point_point(a[end_a], b[end_b]);
-      found_[kParallelPointPoint].push_back({edge_a, key_of(edge_b) << 2 | end_a << 1 | end_b});
-    } else if (d.part_a != 3) {
-      if (!parallel) return add_point_edge(a[end_a], b[0], b[1]);
-      found_[kParallelPointEdge].push_back({edge_a, key_of(edge_b) << 2 | end_a});
-    } else {
-      if (!parallel) return add_point_edge(b[end_b], a[0], a[1]);
-      found_[kParallelPointEdge].push_back({edge_a, key_of(edge_b) << 2 | 2 | end_b});
+  void edge_edges(const std::array<int, 2>* pairs, int count) {
+    operations_.edge_edge(x_.data(), plain(surface_.edges.data()), plain(pairs), count, room_);
+    for (int i = 0; i < count; ++i) {
+      const auto &a = surface_.edges[static_cast<size_t>(pairs[i][0])],
+                 &b = surface_.edges[static_cast<size_t>(pairs[i][1])];
+      double gap2 = room_.gap2[i];
+      auto parts = static_cast<unsigned>(room_.part[i]);
+      if (!(gap2 >= 0)) {
+        const EdgeEdgeDistance d = edge_edge_distance(at(a[0]), at(a[1]), at(b[0]), at(b[1]));
+        gap2 = d.gap2, parts = d.part_a | d.part_b << 2;
+      }
+      if (near(gap2, a[0], b[0])) add_edge_edge(pairs[i][0], pairs[i][1], parts & 3u, parts >> 2, room_.sine2[i]);
     }
   }
 
+  void point_edges(const std::array<int, 2>* pairs, int count) {
+    for (int i = 0; i < count; ++i) point_edge(pairs[i][0], pairs[i][1]);
+  }
+  void point_points(const std::array<int, 2>* pairs, int count) {
+    for (int i = 0; i < count; ++i) point_point(pairs[i][0], pairs[i][1]);
+  }
+
+  double smallest_gap() const { return smallest_; }
+
+ private:
   void point_edge(int point, int edge) {
     const int p = surface_.points[static_cast<size_t>(point)];
     const auto& e = surface_.edges[static_cast<size_t>(edge)];
@@ -81,9 +92,6 @@ class Finder {
     if (near((x_.col(p) - x_.col(q)).squaredNorm(), p, q)) add_point_point(p, q);
   }
 
-  double smallest_gap() const { return smallest_; }
-
- private:
   Vector3d at(int vertex) const { return x_.col(vertex); }
 
   bool near(double gap2, int p, int q) {
@@ -95,10 +103,38 @@ class Finder {
 
   int object_of(int vertex) const { return surface_.object[static_cast<size_t>(vertex)]; }
 
-  bool mollified(const std::array<int, 2>& a, const std::array<int, 2>& b) const {
-    const double sine = (x_.col(a[1]) - x_.col(a[0])).cross(x_.col(b[1]) - x_.col(b[0])).squaredNorm();
-    return sine <
-           kMollified * (X_.col(a[1]) - X_.col(a[0])).squaredNorm() * (X_.col(b[1]) - X_.col(b[0])).squaredNorm();
+  double rest_length2(const std::array<int, 2>& edge) const {
+    return (X_.col(edge[1]) - X_.col(edge[0])).squaredNorm();
+  }
+
+  void add_point_triangle(int point, int triangle, unsigned part) {
+    const int p = surface_.points[static_cast<size_t>(point)];
+    const auto& t = surface_.triangles[static_cast<size_t>(triangle)];
+    switch (part) {
+      case 7:
+        return found_[kPointTriangle].push_back({point, key_of(triangle)});
+      case 3:
+      case 5:
+      case 6:
+        return add_point_edge(p, t[part == 6 ? 1 : 0], t[part == 3 ? 1 : 2]);
+      default:
+        return add_point_point(p, t[part / 2]);
+    }
+  }
+
+  // sine2: |cross(a, b)|^2, m^4.
+  void add_edge_edge(int edge_a, int edge_b, unsigned part_a, unsigned part_b, double sine2) {
+    if (part_a == 3 && part_b == 3) return found_[kEdgeEdge].push_back({edge_a, key_of(edge_b)});
+    const auto &a = surface_.edges[static_cast<size_t>(edge_a)], &b = surface_.edges[static_cast<size_t>(edge_b)];
+    const size_t end_a = part_a - 1, end_b = part_b - 1;
+    if (sine2 < kMollified * rest_length2(a) * rest_length2(b)) {
+      const std::uint64_t key = key_of(edge_b) << 2;
+      if (part_a != 3 && part_b != 3) return found_[kParallelPointPoint].push_back({edge_a, key | end_a << 1 | end_b});
+      return found_[kParallelPointEdge].push_back({edge_a, key | (part_a != 3 ? end_a : 2 | end_b)});
+    }
+    if (part_a == 3) return add_point_edge(b[end_b], a[0], a[1]);
+    if (part_b == 3) return add_point_edge(a[end_a], b[0], b[1]);
+    add_point_point(a[end_a], b[end_b]);
   }
 
   void add_point_edge(int p, int e0, int e1) { found_[kPointEdge].push_back({p, pair_key(e0, e1)}); }
@@ -108,6 +144,8 @@ class Finder {
   const Matrix3Xd &x_, &X_;
   double dhat_;
   FoundStencils& found_;
+  const lanes::DistanceOperations& operations_ = lanes::distance_operations(lanes::best_lanes());
+  lanes::DistanceRoom room_;
   double smallest_ = std::numeric_limits<double>::infinity();
 };
 
@@ -169,12 +207,6 @@ void fill_lists(const CollisionSurface& surface, ActiveSet& active) {
       active.parallel_point_point);
 }
 
-// The range of 0 to count that thread `thread` of `threads` looks at.
-template <class Call>
-void share(size_t count, size_t thread, size_t threads, const Call& call) {
-  for (size_t i = count * thread / threads; i < count * (thread + 1) / threads; ++i) call(i);
-}
-
 }  // namespace
 
 void find_active(const CollisionSurface& surface, const Candidates& candidates, const Matrix3Xd& x, const Matrix3Xd& X,
@@ -188,13 +220,16 @@ void find_active(const CollisionSurface& surface, const Candidates& candidates, 
   {
     const auto thread = static_cast<size_t>(omp_get_thread_num()), threads = static_cast<size_t>(omp_get_num_threads());
     Finder finder(surface, x, X, dhat, active.found[thread]);
-    const auto each = [&](const auto& pairs, const auto& call) {
-      share(pairs.size(), thread, threads, [&](size_t i) { call(pairs[i][0], pairs[i][1]); });
+    const auto each = [&](const std::vector<std::array<int, 2>>& pairs, const auto& call) {
+      const size_t last = pairs.size() * (thread + 1) / threads;
+      for (size_t i = pairs.size() * thread / threads; i < last; i += lanes::kDistances) {
+        call(pairs.data() + i, static_cast<int>(std::min<size_t>(lanes::kDistances, last - i)));
+      }
     };
-    each(candidates.point_triangle, [&](int p, int t) { finder.point_triangle(p, t); });
-    each(candidates.edge_edge, [&](int a, int b) { finder.edge_edge(a, b); });
-    each(candidates.point_edge, [&](int p, int e) { finder.point_edge(p, e); });
-    each(candidates.point_point, [&](int p, int q) { finder.point_point(p, q); });
+    each(candidates.point_triangle, [&](const auto* pairs, int n) { finder.point_triangles(pairs, n); });
+    each(candidates.edge_edge, [&](const auto* pairs, int n) { finder.edge_edges(pairs, n); });
+    each(candidates.point_edge, [&](const auto* pairs, int n) { finder.point_edges(pairs, n); });
+    each(candidates.point_point, [&](const auto* pairs, int n) { finder.point_points(pairs, n); });
     smallest = finder.smallest_gap();
   }
   active.smallest_gap = smallest;

@@ -6,6 +6,7 @@
 
 #include "runtime/contact/box_tree.h"
 #include "runtime/contact/motion_boxes.h"
+#include "runtime/lanes/lanes.h"
 
 namespace ergon {
 
@@ -122,7 +123,7 @@ void BroadPhase::Impl::list_objects() {
 
 void BroadPhase::Impl::write(const BoxTree& a, const BoxTree& b, std::vector<lanes::LeafPair>& pairs,
                              std::vector<std::array<int, 2>>& out) {
-  const lanes::OverlapOperations& operations = lanes::overlap_operations();
+  const lanes::OverlapOperations& operations = lanes::overlap_operations(lanes::best_lanes());
   lanes::OverlapTask task{};
   task.a = a.leaves();
   task.b = b.leaves();

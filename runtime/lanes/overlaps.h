@@ -40,6 +40,7 @@ struct OverlapOperations {
   long (*overlaps)(const OverlapTask&, const LeafPair* pairs, long count, IdPair* out, long room, long* found);
 };
 
-const OverlapOperations& overlap_operations();  // for the widest vectors this machine has
+// Throws std::invalid_argument for a width that is none of kWidths or that this machine lacks.
+const OverlapOperations& overlap_operations(int lanes);
 
 }  // namespace ergon::lanes
