@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "runtime/contact/distance.h"
-#include "tests/runtime/contact_cases.h"
 #include "tests/runtime/exact_distance.h"
+#include "tools/contact_cases.h"
 
 namespace ergon {
 namespace {

@@ -1,5 +1,5 @@
 #pragma once
-// Random placements of four points, from the ordinary to the degenerate, as they occur in contact.
+// Random placements and motions of four points, from the ordinary to the degenerate, as they occur in contact.
 
 #include <Eigen/Geometry>
 #include <array>
@@ -96,6 +96,65 @@ class ContactCases {
       for (Eigen::Vector3d& p : x) p.z() = -0.5;
     }
     return x;
+  }
+
+  // Two primitives of size 1 at a gap of 1e-6 to 0.1, each vertex moving by 1e-3 to 1 in a direction of its own: about
+  // as many collide within the time as do not.
+  struct Moving {
+    FourPoints x, motion;
+  };
+  Moving near_contact(bool edges) {
+    Moving m;
+    m.x = edges ? edge_edge(0) : point_triangle(0);
+    double s = uniform(0, 1), t = uniform(0, 1);
+    if (!edges && s + t > 1) s = 1 - s, t = 1 - t;
+    Eigen::Vector3d to = m.x[1] + s * (m.x[2] - m.x[1]) + t * (m.x[3] - m.x[1]);
+    if (edges) to = m.x[0] + s * (m.x[1] - m.x[0]) - t * (m.x[3] - m.x[2]);
+    const Eigen::Vector3d normal = edges ? (m.x[1] - m.x[0]).cross(m.x[3] - m.x[2]).normalized()
+                                         : (m.x[2] - m.x[1]).cross(m.x[3] - m.x[1]).normalized();
+    const double away = std::pow(10, uniform(-6, -1));
+    to += (integer(0, 3) > 0 ? away : -away) * (integer(0, 1) > 0 ? normal : direction());
+    if (edges) {
+      m.x[3] += to - m.x[2];
+      m.x[2] = to;
+    } else {
+      m.x[0] = to;
+    }
+    const double speed = std::pow(10, uniform(-3, 0));
+    for (Eigen::Vector3d& v : m.motion) v = speed * vector();
+    return m;
+  }
+
+  static constexpr int kMotionKinds = 11;
+  // Displacements of points at x, of which the first `first` are of one primitive.
+  FourPoints motion(int kind, const FourPoints& x, size_t first) {
+    const auto zero = Eigen::Vector3d::Zero();
+    FourPoints m{zero, zero, zero, zero};
+    const Eigen::Vector3d common = vector();
+    // From a point of one primitive to one of the other.
+    double u = uniform(0, 1), v = uniform(0, 1 - u);
+    if (integer(0, 2) == 0) u = 0;
+    if (integer(0, 2) == 0) v = 0;
+    const Eigen::Vector3d onto = first == 1 ? Eigen::Vector3d(x[1] + u * (x[2] - x[1]) + v * (x[3] - x[1]) - x[0])
+                                            : Eigen::Vector3d(x[2] + u * (x[3] - x[2]) - x[0] - v * (x[1] - x[0]));
+    for (size_t i = 0; i < 4; ++i) {
+      if (kind == 1) m[i] = vector();
+      if (kind == 2) m[i] = gap() * vector();
+      if (kind == 3) m[i] = common;
+      if (kind == 4) m[i] = vector().cwiseProduct(Eigen::Vector3d(1, 1, 0));
+      if (kind == 6) m[i] = common;
+      if (kind == 7) m[i] = whole();
+      if (kind == 10) m[i] = gap() * direction();
+    }
+    const double aim = uniform(0.5, 3), arrive = uniform(0.9, 1.1);
+    for (size_t i = 0; i < first; ++i) {
+      if (kind == 5) m[i] = aim * onto;
+      if (kind == 6) m[i] += arrive * onto;                      // arriving, carried along
+      if (kind == 8) m[i] = 1e3 * (onto + gap() * direction());  // fast
+      if (kind == 9 && i == 0) m[i] = 2 * onto + gap() * direction();
+      if (kind == 10) m[i] += 2 * onto;  // at times past an edge or a corner
+    }
+    return m;
   }
 
  private:
