@@ -27,6 +27,8 @@ struct Kernel {
 
 // Values of params by name, components column by column.
 using Parameters = std::map<std::string, std::vector<double>>;
+// Rest data by name, one value set per stencil.
+using StencilData = std::map<std::string, std::vector<double>>;
 
 class Potential {
  public:
@@ -36,22 +38,31 @@ class Potential {
   static Potential on_mesh(std::string name, Kernel kernel, const Mesh& mesh, int first_vertex,
                            const Parameters& params, std::optional<int> exactness = std::nullopt);
 
-  // A stencil energy: `points` vertices per stencil, one stencil after the other. `rest` holds rest data by name, one
-  // value set per stencil (components adjacent): a rest vector that is named like a dof but with a capital first letter
-  // (X0 for x0) and is absent from `rest` is filled with that point's column of X.
-  static Potential on_stencils(std::string name, Kernel kernel, std::vector<int> stencils, const Eigen::Matrix3Xd& X,
-                               const Parameters& params, const std::map<std::string, std::vector<double>>& rest);
+  // A stencil energy: the vertices of the kernel's points, one stencil after the other. `rest` holds rest data by name,
+  // one value set per stencil (components adjacent): a rest vector that is named like a dof but with a capital first
+  // letter (X0 for x0) and is absent from `rest` is filled with that point's column of X.
+  static Potential on_stencils(std::string name, Kernel kernel, const std::vector<int>& stencils,
+                               const Eigen::Matrix3Xd& X, const Parameters& params, const StencilData& rest);
+  // The same where a stencil names only the points that the kernel's q depends on (a point beside an edge takes three
+  // points of the four of point-triangle energies).
+  static Potential on_used_points(std::string name, Kernel kernel, const std::vector<int>& stencils,
+                                  const Eigen::Matrix3Xd& X, const Parameters& params, const StencilData& rest);
+  // A stencil energy whose q is formed with weights of each stencil's own, given to set_combinations, over `points`
+  // vertices per stencil, 1 to 12, whatever the points of the energy: q_k = sum_a w_ka x_a. Without stencils at first.
+  static Potential on_combinations(std::string name, Kernel kernel, int points, const Parameters& params);
 
   const std::string& name() const;
   const ErgonKernel& kernel() const;
-  int stencil_count() const;  // cells or stencils
-  int points_per_stencil() const;
-  int quadrature_points() const;  // per stencil; 1 for a stencil energy
+  int stencil_count() const;       // cells or stencils
+  int points_per_stencil() const;  // that a list of stencils names
+  int quadrature_points() const;   // per stencil; 1 for a stencil energy
   const std::vector<int>& stencils() const;
 
-  // Replaces the list of stencils (contact): rest data as in on_stencils; lag data must be set again.
-  void set_stencils(std::vector<int> stencils, const Eigen::Matrix3Xd& X,
-                    const std::map<std::string, std::vector<double>>& rest);
+  // Replaces the list of stencils (contact): rest data as in on_stencils; lag data must be set again. Asks for no
+  // memory while the list is not longer than every one before it.
+  void set_stencils(const std::vector<int>& stencils, const Eigen::Matrix3Xd& X, const StencilData& rest);
+  // The same for on_combinations: weights[(stencil*q_vectors + k)*points + a], pure numbers; all rest data is given.
+  void set_combinations(const std::vector<int>& stencils, const std::vector<double>& weights, const StencilData& rest);
 
   // Lag data by name: one value set for all stencils, or one per stencil (components adjacent).
   // Evaluation throws std::logic_error while a lag has never been set.

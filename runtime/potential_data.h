@@ -11,15 +11,22 @@
 
 namespace ergon {
 
+inline int size_of(const ErgonInput& input) { return input.rows * input.cols; }
+std::string values_text(size_t count);  // "1 value", "2 values"
+
 struct Potential::Impl {
   std::string name;
   Kernel kernel;
   int lanes = 1;
-  int points = 0;
+  int points = 0;  // of a stencil that are evaluated
   int quadrature = 1;
   int count = 0;
 
-  std::vector<int> stencils;    // as given
+  std::vector<int> stencils;  // as given, `listed` vertices each
+  int listed = 0;
+  bool combined = false;        // by weights of each stencil's own
+  std::vector<int> names;       // of the points that are listed: kernel->point_names; empty when combined
+  std::vector<int> used;        // places in the list of the points that are evaluated
   int first_vertex = 0;         // of the system, where rest begins
   Eigen::Matrix3Xd rest;        // rest positions of a density whose q is F - I, else empty
   AlignedVector<int> vertices;  // [block][points][lanes]
@@ -46,31 +53,36 @@ struct Potential::Impl {
   int chunk = 1;
   int blocks() const { return (count + lanes - 1) / lanes; }
   int chunks() const { return (blocks() + chunk - 1) / chunk; }
-  // The stencil in a lane; in a lane of padding, the chunk's last.
-  int stencil_in(int block, int lane) const {
-    const int first = block / chunk * chunk, n = std::min(chunk, blocks() - first);
-    return std::min(first * lanes + lane * n + block - first, std::min((first + n) * lanes, count) - 1);
-  }
+  std::vector<int> order;         // of stencils; empty: as given
+  std::vector<int> lane_stencil;  // [block][lane]; in a lane of padding, the chunk's last
   // Lanes from this one on are padding.
   int lanes_in(int block) const {
     const int first = block / chunk * chunk, n = std::min(chunk, blocks() - first);
     return std::min(lanes, (count - first * lanes - (block - first) + n - 1) / n);
   }
+  void order_stencils();
   void cut();
+  std::vector<int> keys, start;  // room of order_stencils
 
   // Checks the kernel and sets what follows from it alone.
   void bind(std::string potential_name, Kernel bound);
   void check_params(const Parameters& values) const;  // throws when one is missing
   void give_params(const Parameters& values);
   bool ascending() const { return kernel->density != 0 && table.empty(); }  // points of each stencil
-  // Lane-ordered vertices of stencils.
-  void order_vertices(const std::vector<int>& given);
+  void bind_stencils(std::string potential_name, Kernel bound, const Parameters& values);
+  // Lists all points of a stencil energy, or those that its q depends on, and evaluates the latter.
+  void list_points(bool all);
+  // Takes a list of stencils over, in lanes. `vertex_count` < 0: not known.
+  void take_list(const std::vector<int>& given, int vertex_count);
+  // Lane-ordered vertices of stencils: `points` of each, `step` apart, at the places `chosen`.
+  void order_vertices(const std::vector<int>& given, int step, const std::vector<int>& chosen);
+  void take_weights(const std::vector<double>& given);
   void allocate_raw();
   // Writes one value set for all stencils or one per stencil into raw.
   void write_raw(const ErgonInput& input, const std::vector<double>& values, const char* kind);
   const ErgonInput& input(const std::string& wanted, int role, const char* kind) const;
-  // Fills rest data from `rest`, or from X for a rest vector named like a point.
-  void give_rest(const Eigen::Matrix3Xd& X, const std::map<std::string, std::vector<double>>& rest);
+  // Fills rest data from `rest`, or from X for a rest vector named like a point that is listed.
+  void give_rest(const Eigen::Matrix3Xd& X, const StencilData& rest);
 
   // Prepares uniforms and elements if anything changed. Throws std::logic_error for a lag that was never set.
   void prepare();

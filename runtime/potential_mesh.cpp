@@ -84,7 +84,9 @@ Potential Potential::on_mesh(std::string name, Kernel kernel, const Mesh& mesh, 
   const int used = exactness.value_or(default_exactness(mesh.element));
   const CellRule rule = rule_of(mesh.element, used);
   const int n = nodes_of(mesh.element);
-  d.points = n;
+  d.points = d.listed = n;
+  d.used.resize(static_cast<size_t>(n));
+  std::iota(d.used.begin(), d.used.end(), 0);
   d.quadrature = static_cast<int>(rule.weights.size());
   d.count = mesh.cell_count();
   d.stencils = mesh.cells;
@@ -118,7 +120,7 @@ Potential Potential::on_mesh(std::string name, Kernel kernel, const Mesh& mesh, 
   std::vector<int> order(static_cast<size_t>(n));
   Eigen::Matrix3Xd nodes(3, n);
   for (size_t lane = 0; lane < blocks * width; ++lane) {
-    const int cell = d.stencil_in(static_cast<int>(lane / width), static_cast<int>(lane % width));
+    const int cell = d.lane_stencil[lane];
     const int* vertex = d.stencils.data() + static_cast<ptrdiff_t>(cell) * n;
     std::iota(order.begin(), order.end(), 0);
     if (constant) std::sort(order.begin(), order.end(), [&](int a, int b) { return vertex[a] < vertex[b]; });
@@ -145,7 +147,7 @@ Potential Potential::on_mesh(std::string name, Kernel kernel, const Mesh& mesh, 
       ordered[static_cast<size_t>(cell * n + a)] = vertex[order[static_cast<size_t>(a)]];
     }
   }
-  d.order_vertices(ordered);
+  d.order_vertices(ordered, n, d.used);
   d.allocate_raw();
   d.give_rest(mesh.X, {});
   return potential;

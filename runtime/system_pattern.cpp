@@ -137,12 +137,12 @@ void System::Impl::build_pattern() {
   for (const SystemTerm& term : terms) {
     if (term.kernel().zero_hessian) continue;
     const std::vector<int>& stencils = term.data().stencils;
-    const auto n = static_cast<size_t>(term.data().points);
-    for (size_t first = 0; first < stencils.size(); first += n) {
-      for (size_t a = 1; a < n; ++a) {
-        const int row = block_of[static_cast<size_t>(stencils[first + a])];
+    const std::vector<int>& used = term.data().used;
+    for (size_t first = 0; first < stencils.size(); first += static_cast<size_t>(term.data().listed)) {
+      for (size_t a = 1; a < used.size(); ++a) {
+        const int row = block_of[static_cast<size_t>(stencils[first + static_cast<size_t>(used[a])])];
         for (size_t b = 0; b < a && row >= 0; ++b) {
-          const int column = block_of[static_cast<size_t>(stencils[first + b])];
+          const int column = block_of[static_cast<size_t>(stencils[first + static_cast<size_t>(used[b])])];
           if (column >= 0) pairs.emplace_back(row, column);
         }
       }

@@ -20,8 +20,8 @@ template <class S>
 inline Differences find_differences(const Stencils& s) {
   Differences d;
   const int n = S::points(s);
-  if (S::kDensity || n != S::kVectors + 1) return d;
-  const auto weight = [&](int k, int a) { return s.kernel->weights[k * n + a]; };
+  if (S::kSource != Source::kernel || n != S::kVectors + 1) return d;
+  const auto weight = [&](int k, int a) { return s.weights[k * n + a]; };
   const auto in_all = [&](int a) {
     for (int k = 0; k < S::kVectors; ++k) {
       if (weight(k, a) == 0) return false;

@@ -8,16 +8,19 @@
 namespace ergon::lanes {
 namespace {
 
-// Where weights come from: constants of a stencil energy's kernel, the same in all lanes; gradients of shape functions
-// in each lane; or their gradients in the reference element, the same in all lanes, times an inverse map in each.
-enum class Source { kernel, gradients, table };
+// Where weights come from: constants of a stencil energy's kernel, the same in all lanes; given for each stencil;
+// gradients of shape functions in each lane; or their gradients in the reference element, the same in all lanes, times
+// an inverse map in each.
+enum class Source { kernel, given, gradients, table };
 
 // P points (0: read from the data) and Q vectors in q.
 template <int P, int Q, Source W>
 struct Shape {
   static constexpr int kPoints = P;
   static constexpr int kVectors = Q;
-  static constexpr bool kDensity = W != Source::kernel;
+  static constexpr Source kSource = W;
+  static constexpr bool kDensity = W == Source::gradients || W == Source::table;
+  static constexpr bool kRelative = W != Source::kernel;  // all points but the last are gathered relative to it
   static constexpr bool kTable = W == Source::table;
   static constexpr bool kAscending = W == Source::gradients;  // points stand in ascending order of vertex
   static constexpr int kMost = P != 0 ? P : kMaxPoints;
@@ -38,11 +41,16 @@ auto with_shape(const Stencils& s, F f) {
     if (vectors == 3) return f(Shape<4, 3, Source::gradients>{});
     return vectors == 2 ? f(Shape<3, 2, Source::gradients>{}) : f(Shape<2, 1, Source::gradients>{});
   }
+  if (s.combined) {
+    if (vectors == 1) return f(Shape<0, 1, Source::given>{});
+    if (vectors == 2) return f(Shape<0, 2, Source::given>{});
+    return vectors == 3 ? f(Shape<0, 3, Source::given>{}) : f(Shape<0, 4, Source::given>{});
+  }
   if (vectors == 1) {
     if (points == 1) return f(Shape<1, 1, Source::kernel>{});
     return points == 2 ? f(Shape<2, 1, Source::kernel>{}) : f(Shape<0, 1, Source::kernel>{});
   }
-  if (vectors == 2) return f(Shape<0, 2, Source::kernel>{});
+  if (vectors == 2) return points == 3 ? f(Shape<3, 2, Source::kernel>{}) : f(Shape<0, 2, Source::kernel>{});
   if (vectors == 3) return points == 4 ? f(Shape<4, 3, Source::kernel>{}) : f(Shape<0, 3, Source::kernel>{});
   return f(Shape<0, 4, Source::kernel>{});
 }
@@ -51,12 +59,12 @@ inline const double* data_of(const Stencils& s, int block) {
   return s.elements + static_cast<long>(block) * s.kernel->elements * kWidth;
 }
 
-template <class S, bool = S::kDensity, bool = S::kTable>
+template <class S, Source = S::kSource>
 class Weights;
 
 // A density: gradients of the shape functions at one point of quadrature. They sum to zero over the points.
 template <class S>
-class Weights<S, true, false> {
+class Weights<S, Source::gradients> {
  public:
   Weights(const Stencils& s, int block, int quadrature) {
     const int free = S::points(s) - 1;
@@ -82,10 +90,26 @@ class Weights<S, true, false> {
 
 // A stencil energy: constants of the kernel.
 template <class S>
-class Weights<S, false, false> {
+class Weights<S, Source::kernel> {
  public:
-  Weights(const Stencils& s, int, int) : weight_(s.kernel->weights), points_(S::points(s)) {}
+  Weights(const Stencils& s, int, int) : weight_(s.weights), points_(S::points(s)) {}
   Real at(int k, int a) const { return splat(weight_[k * points_ + a]); }
+  static Real times_volume(Real a) { return a; }
+
+ private:
+  const double* weight_;
+  int points_;
+};
+
+// A stencil energy with weights of each stencil's own.
+template <class S>
+class Weights<S, Source::given> {
+ public:
+  Weights(const Stencils& s, int block, int)
+      : weight_(s.weights + static_cast<long>(block) * S::kVectors * (S::points(s) + 1) * kWidth),
+        points_(S::points(s)) {}
+  Real at(int k, int a) const { return load(weight_ + (k * (points_ + 1) + a) * kWidth); }
+  Real sum(int k) const { return at(k, points_); }
   static Real times_volume(Real a) { return a; }
 
  private:
@@ -96,7 +120,7 @@ class Weights<S, false, false> {
 // A density on an element whose gradients vary: those in the reference element, and the inverse of its map. The
 // gradient of point a along axis k of the rest shape is sum_j map(j, k) table(j)[a].
 template <class S>
-class Weights<S, true, true> {
+class Weights<S, Source::table> {
  public:
   Weights(const Stencils& s, int block, int quadrature) : points_(S::points(s)) {
     constexpr int Q = S::kVectors;
@@ -134,6 +158,10 @@ inline void prefetch_block(const Stencils& s, int block) {
     prefetch(s.weights + places * (weights / 8), weights * s.quadrature);
     prefetch(s.volumes + places * kWidth, vector * s.quadrature);
   }
+  if constexpr (S::kSource == Source::given) {
+    const long weights = static_cast<long>(S::kVectors) * (n + 1);
+    prefetch(s.weights + block * weights * kWidth, vector * weights);
+  }
   prefetch(data_of(s, block), vector * s.kernel->elements);
 }
 
@@ -142,7 +170,7 @@ inline void gather_points(const Stencils& s, int block, const double* x, Vector3
   const int n = S::points(s);
   const int* vertices = s.vertices + static_cast<long>(block) * n * kWidth;
   for (int a = 0; a < n; ++a) points[a] = gather(x, vertices + a * kWidth);
-  if constexpr (S::kDensity) {
+  if constexpr (S::kRelative) {
     // Relative to the last point, so that its weights are not needed and nothing cancels far from the origin.
     for (int a = 0; a + 1 < n; ++a) {
       for (int c = 0; c < 3; ++c) points[a].c[c] -= points[n - 1].c[c];
@@ -153,7 +181,7 @@ inline void gather_points(const Stencils& s, int block, const double* x, Vector3
 // q = (weights (x) I3) x, from what gather_points gave.
 template <class S>
 inline void form_q(const Stencils& s, const Weights<S>& w, const Vector3* points, double* q) {
-  const int n = S::kDensity ? S::points(s) - 1 : S::points(s);
+  const int n = S::kRelative ? S::points(s) - 1 : S::points(s);
   if constexpr (S::kTable) {
     constexpr int Q = S::kVectors;
     Real by_axis[Q][3] = {};
@@ -174,6 +202,9 @@ inline void form_q(const Stencils& s, const Weights<S>& w, const Vector3* points
   } else
     for (int k = 0; k < S::kVectors; ++k) {
       Real sum[3] = {splat(0), splat(0), splat(0)};
+      if constexpr (S::kSource == Source::given) {
+        for (int c = 0; c < 3; ++c) sum[c] = w.sum(k) * points[n].c[c];
+      }
       for (int a = 0; a < n; ++a) {
         for (int c = 0; c < 3; ++c) sum[c] += w.at(k, a) * points[a].c[c];
       }

@@ -10,6 +10,7 @@
 namespace ergon::lanes {
 
 constexpr int kMaxPoints = 27;    // of a stencil or element
+constexpr int kMaxCombined = 12;  // points of a stencil with weights of its own
 constexpr int kMaxVectors = 4;    // 3-vectors in q
 constexpr int kProjectClamp = 0;  // what is done to negative eigenvalues; the order of ergon::Projection
 constexpr int kProjectAbsolute = 1;
@@ -34,7 +35,8 @@ struct Stencils {
   const int* axis_nodes;
   // A density. With a table: the inverse of the map to the rest shape, [block][quadrature][q_vectors of the reference
   // element][q_vectors][W]. Without: gradients at rest, [block][quadrature][q_vectors][points - 1][W]; the last is
-  // minus the sum of the others.
+  // minus the sum of the others. A stencil energy: [q_vectors][points], or, where each stencil has weights of its own,
+  // [block][q_vectors][points + 1][W]; the last is the sum of the others.
   const double* weights;
   const double* volumes;   // density: [block][quadrature][W]
   const double* elements;  // [block][kernel->elements][W]
@@ -44,6 +46,7 @@ struct Stencils {
   const int* slots;
   // [block][pairs]: bit l is set when in lane l the block's row in the matrix is that of b. Null where points ascend.
   const unsigned char* turned;
+  bool combined;  // each stencil has weights of its own
 };
 
 struct BlockRange {

@@ -303,7 +303,7 @@ struct HingeLaw : LawDefaults {
   }
 };
 
-// Three points, two vectors: neither is one of the shapes that are known at compile time.
+// Three points, two vectors.
 struct BendLaw : LawDefaults {
   static constexpr const char* kName = "bend";
   static constexpr const char* kGeometry = "triple";
