@@ -32,25 +32,30 @@ const IntegerBox kEmpty{{kHighest, kHighest, kHighest}, {kLowest, kLowest, kLowe
 
 }  // namespace
 
-BoxTree::BoxTree(int corners, std::vector<int> primitives, std::vector<int> ids, const std::vector<int>& object,
-                 const std::vector<char>& moving, int objects)
+BoxTree::BoxTree(int corners, const std::vector<int>& primitives, const std::vector<int>& ids,
+                 const std::vector<int>& object, const std::vector<char>& moving, int objects)
     : corners_(corners) {
   const auto size = static_cast<size_t>(corners);
-  std::vector<size_t> order(ids.size());
-  std::iota(order.begin(), order.end(), size_t{0});
-  const auto object_of = [&](size_t i) { return object[static_cast<size_t>(primitives[size * i])]; };
-  std::stable_sort(order.begin(), order.end(), [&](size_t i, size_t j) { return object_of(i) < object_of(j); });
-  starts_.assign(static_cast<size_t>(objects) + 1, static_cast<int>(ids.size()));
-  for (size_t n = order.size(); n-- > 0;) starts_[static_cast<size_t>(object_of(order[n]))] = static_cast<int>(n);
-  for (size_t o = static_cast<size_t>(objects); o-- > 0;) starts_[o] = std::min(starts_[o], starts_[o + 1]);
-  for (const size_t i : order) {
+  const auto object_of = [&](size_t i) {
+    return static_cast<size_t>(object[static_cast<size_t>(primitives[size * i])]);
+  };
+  starts_.assign(static_cast<size_t>(objects) + 1, 0);
+  for (size_t i = 0; i < ids.size(); ++i) ++starts_[object_of(i) + 1];
+  std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
+  primitives_.resize(primitives.size());
+  ids_.resize(ids.size());
+  moving_.resize(ids.size());
+  std::vector<int> next(starts_.begin(), starts_.end() - 1);
+  for (size_t i = 0; i < ids.size(); ++i) {
+    const auto to = static_cast<size_t>(next[object_of(i)]++);
+    ids_[to] = ids[i];
     char moves = 0;
     for (size_t k = 0; k < size; ++k) {
-      primitives_.push_back(primitives[size * i + k]);
-      moves |= moving[static_cast<size_t>(primitives_.back())];
+      const int v = primitives[size * i + k];
+      primitives_[size * to + k] = v;
+      moves |= moving[static_cast<size_t>(v)];
     }
-    ids_.push_back(ids[i]);
-    moving_.push_back(moves);
+    moving_[to] = moves;
   }
   roots_.assign(static_cast<size_t>(objects), -1);
 }

@@ -26,7 +26,7 @@ class BoxTree {
   };
 
   // `corners` vertices per primitive, 1 to 3; `primitives` and `ids` run side by side; `object` is per vertex.
-  BoxTree(int corners, std::vector<int> primitives, std::vector<int> ids, const std::vector<int>& object,
+  BoxTree(int corners, const std::vector<int>& primitives, const std::vector<int>& ids, const std::vector<int>& object,
           const std::vector<char>& moving, int objects);
 
   int corners() const { return corners_; }

@@ -4,30 +4,47 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "runtime/error.h"
 
 namespace ergon {
 
+using Eigen::Array3d;
+using Eigen::Matrix3Xd;
+using Eigen::Vector3d;
+
 namespace {
 
-constexpr double kUnits = 1 << 29;  // along the longest side of all boxes: sums of two stay within an int
+constexpr double kUnits = 1 << 29;  // along the longest side of all: a box and a shift add up to less than an int holds
 constexpr double kSpare = 0.25;     // of a point's motion, beyond its slack
+constexpr double kDrift = 0.25;     // of the slack: mean motions below it are left to the boxes
 
 }  // namespace
 
-MotionBoxes::MotionBoxes(const CollisionSurface& surface) : surface_(&surface), number_(surface.object.size(), -1) {
+MotionBoxes::MotionBoxes(const CollisionSurface& surface)
+    : surface_(&surface), number_(surface.object.size(), -1), count_(surface.radius.size(), 0) {
   for (size_t i = 0; i < surface.points.size(); ++i) {
     number_[static_cast<size_t>(surface.points[i])] = static_cast<int>(i);
+    count_[object_of(surface.points[i])] += 1;
   }
 }
 
-double MotionBoxes::half(double reach, int vertex) const {
-  return reach / 2 + surface_->radius[static_cast<size_t>(surface_->object[static_cast<size_t>(vertex)])];
+double MotionBoxes::half(double reach, int vertex) const { return reach / 2 + surface_->radius[object_of(vertex)]; }
+
+double MotionBoxes::fraction(const Matrix3Xd& x) const {
+  double along = 0, all = 0;
+  for (const int v : surface_->points) along += drift_[object_of(v)].dot(x.col(v));
+  for (size_t o = 0; o < drift_.size(); ++o) {
+    along -= drift_[o].dot(start_[o]);
+    all += count_[o] * drift_[o].squaredNorm();
+  }
+  return std::clamp(along / all, 0.0, 1.0);
 }
 
-bool MotionBoxes::hold(const Eigen::Matrix3Xd& x0, const Eigen::Matrix3Xd& x1, double reach) const {
+bool MotionBoxes::hold(const Matrix3Xd& x0, const Matrix3Xd& x1, double reach) const {
   if (held_.empty()) return false;
+  const double from = still_ ? 0 : fraction(x0), to = still_ ? 0 : &x1 == &x0 ? from : fraction(x1);
   const auto count = static_cast<std::ptrdiff_t>(held_.size());
   bool all = true;
 #pragma omp parallel for schedule(static) reduction(&& : all)
@@ -35,53 +52,89 @@ bool MotionBoxes::hold(const Eigen::Matrix3Xd& x0, const Eigen::Matrix3Xd& x1, d
     if (!all) continue;
     const int v = surface_->points[static_cast<size_t>(i)];
     const Box& box = held_[static_cast<size_t>(i)];
+    const Vector3d& drift = drift_[object_of(v)];
     const double r = half(reach, v);
-    const double *a = x0.data() + 3 * static_cast<std::ptrdiff_t>(v),
-                 *b = x1.data() + 3 * static_cast<std::ptrdiff_t>(v);
     bool inside = true;
     for (int k = 0; k < 3; ++k) {
-      inside = inside & (std::min(a[k], b[k]) - r >= box.lower[k]) & (std::max(a[k], b[k]) + r <= box.upper[k]);
+      const double a = x0(k, v) - from * drift[k], b = x1(k, v) - to * drift[k];
+      inside = inside & (std::min(a, b) - r >= box.lower[k]) & (std::max(a, b) + r <= box.upper[k]);
     }
     all = all && inside;
   }
   return all;
 }
 
-void MotionBoxes::make(const Eigen::Matrix3Xd& x0, const Eigen::Matrix3Xd& x1, double reach, double slack) {
+void MotionBoxes::find_drift(const Matrix3Xd& x0, const Matrix3Xd& x1) {
+  start_.assign(count_.size(), Vector3d::Zero());
+  drift_.assign(count_.size(), Vector3d::Zero());
+  for (const int v : surface_->points) {
+    if (!x0.col(v).allFinite() || !x1.col(v).allFinite()) {
+      throw InputError(fmt::format("vertex {} has no finite position", v));
+    }
+    start_[object_of(v)] += x0.col(v);
+    drift_[object_of(v)] += x1.col(v) - x0.col(v);
+  }
+  for (size_t o = 0; o < count_.size(); ++o) drift_[o] /= std::max(count_[o], 1.0);
+}
+
+void MotionBoxes::make(const Matrix3Xd& x0, const Matrix3Xd& x1, Slack& chosen) {
+  held_.clear();
+  find_drift(x0, x1);
+  double motion = 0;
+  for (const int v : surface_->points) motion += (x1.col(v) - x0.col(v) - drift_[object_of(v)]).norm();
+  const double slack =
+      chosen.next(*surface_, x0, motion / std::max<double>(1, static_cast<double>(surface_->points.size())));
+  const double reach = chosen.reach();
+  still_ = true;
+  for (Vector3d& drift : drift_) {
+    if (drift.norm() <= kDrift * slack) drift.setZero();
+    still_ = still_ && drift.isZero(0);
+  }
   const auto count = static_cast<std::ptrdiff_t>(surface_->points.size());
   held_.resize(static_cast<size_t>(count));
   boxes_.resize(static_cast<size_t>(count));
-  if (count == 0) return;
-  Eigen::Array3d lowest = Eigen::Array3d::Constant(std::numeric_limits<double>::infinity()), highest = -lowest;
+  Array3d lowest = Array3d::Constant(std::numeric_limits<double>::infinity()), highest = -lowest;
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     const int v = surface_->points[static_cast<size_t>(i)];
-    const Eigen::Vector3d a = x0.col(v), b = x1.col(v);
-    if (!a.allFinite() || !b.allFinite()) {
-      held_.clear();
-      throw InputError(fmt::format("vertex {} has no finite position", v));
-    }
-    const Eigen::Array3d move = (b - a).array().abs();
-    // What the subtractions here and in hold may round.
-    const double rounding =
-        4 * std::numeric_limits<double>::epsilon() * std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff());
-    const Eigen::Array3d spare = half(reach, v) + slack + rounding + kSpare * move;
+    const Array3d drift = drift_[object_of(v)], a = x0.col(v), b = x1.col(v).array() - drift;
+    // What the subtractions here and in hold() may round.
+    const double size = a.abs().maxCoeff() + b.abs().maxCoeff() + 2 * drift.abs().maxCoeff();
+    const double rounding = 4 * std::numeric_limits<double>::epsilon() * size;
+    const Array3d spare = half(reach, v) + slack + rounding + kSpare * (b - a).abs();
     Box& box = held_[static_cast<size_t>(i)];
-    box.lower = a.array().min(b.array()) - spare;
-    box.upper = a.array().max(b.array()) + spare;
-    lowest = lowest.min(box.lower.array());
-    highest = highest.max(box.upper.array());
+    box.lower = a.min(b) - spare;
+    box.upper = a.max(b) + spare;
+    lowest = lowest.min(box.lower.array() + drift.min(0));
+    highest = highest.max(box.upper.array() + drift.max(0));
   }
-  const double side = (highest - lowest).maxCoeff(), scale = side > 0 ? kUnits / side : 0;
+  const double side = count > 0 ? (highest - lowest).maxCoeff() : 0;
+  units_ = side > 0 ? kUnits / side : 0;
 #pragma omp parallel for schedule(static)
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     const Box& box = held_[static_cast<size_t>(i)];
     IntegerBox& units = boxes_[static_cast<size_t>(i)];
     for (int k = 0; k < 3; ++k) {
       const auto at = static_cast<size_t>(k);
-      units.lower[at] = static_cast<int>((box.lower[k] - lowest[k]) * scale) - 1;  // truncated, and what was rounded
-      units.upper[at] = static_cast<int>((box.upper[k] - lowest[k]) * scale) + 2;
+      units.lower[at] = static_cast<int>((box.lower[k] - lowest[k]) * units_) - 1;  // truncated, and what was rounded
+      units.upper[at] = static_cast<int>((box.upper[k] - lowest[k]) * units_) + 2;
     }
   }
 }
+
+Shift MotionBoxes::in_units(const Vector3d& move) const {
+  Shift shift;
+  for (int k = 0; k < 3; ++k) {
+    const auto at = static_cast<size_t>(k);
+    if (move[k] < 0) shift.lower[at] = static_cast<int>(move[k] * units_) - 2;
+    if (move[k] > 0) shift.upper[at] = static_cast<int>(move[k] * units_) + 2;
+  }
+  return shift;
+}
+
+Shift MotionBoxes::shift(int object_a, int object_b) const {
+  return in_units(drift_[static_cast<size_t>(object_b)] - drift_[static_cast<size_t>(object_a)]);
+}
+
+Shift MotionBoxes::drift(int object) const { return in_units(drift_[static_cast<size_t>(object)]); }
 
 }  // namespace ergon

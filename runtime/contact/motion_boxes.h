@@ -1,12 +1,17 @@
 #pragma once
 // Boxes that hold the points of a surface during a straight motion, with room to spare. It establishes when a later
 // motion stays within them: then primitives that come near each other on it have boxes that meet.
+//
+// The boxes of an object move along with its mean motion, so that a body in flight has small ones. Two objects that
+// move differently meet where their boxes do at any displacement that they have against each other on the way.
 
 #include <Eigen/Core>
 #include <vector>
 
 #include "runtime/contact/box_tree.h"
 #include "runtime/contact/collision_surface.h"
+#include "runtime/contact/pair_list.h"
+#include "runtime/contact/slack.h"
 
 namespace ergon {
 
@@ -20,21 +25,33 @@ class MotionBoxes {
   // Whether boxes were made that hold each point, by half of reach and its radius, on the way from x0 to x1.
   bool hold(const Eigen::Matrix3Xd& x0, const Eigen::Matrix3Xd& x1, double reach) const;
 
-  // Makes boxes for this motion that leave each point `slack` and a quarter of its motion (m) to spare. Throws
-  // InputError for a point without finite position.
-  void make(const Eigen::Matrix3Xd& x0, const Eigen::Matrix3Xd& x1, double reach, double slack);
+  // Makes boxes for this motion, for the reach that `slack` knows; they leave each point its slack and a quarter of its
+  // motion against its object to spare. Throws InputError for a point without finite position.
+  void make(const Eigen::Matrix3Xd& x0, const Eigen::Matrix3Xd& x1, Slack& slack);
 
-  const std::vector<IntegerBox>& boxes() const { return boxes_; }  // in units of the smallest cube around all
+  const std::vector<IntegerBox>& boxes() const { return boxes_; }  // in units that fit all into an int
+  Shift shift(int object_a, int object_b) const;                   // on the way
+  // Where an object is on the way, in its box or displaced by its motion.
+  Shift drift(int object) const;
 
  private:
   double half(double reach, int vertex) const;
+  size_t object_of(int vertex) const { return static_cast<size_t>(surface_->object[static_cast<size_t>(vertex)]); }
+  void find_drift(const Eigen::Matrix3Xd& x0, const Eigen::Matrix3Xd& x1);
+  // How much of the way the objects have gone, at best.
+  double fraction(const Eigen::Matrix3Xd& x) const;
+  Shift in_units(const Eigen::Vector3d& move) const;
 
   const CollisionSurface* surface_;
   std::vector<int> number_;
+  std::vector<double> count_;  // points per object
   struct Box {
     Eigen::Vector3d lower, upper;  // m
   };
-  std::vector<Box> held_;  // per point
+  std::vector<Box> held_;                       // per point
+  std::vector<Eigen::Vector3d> start_, drift_;  // per object: sum of points and mean motion, m
+  bool still_ = true;                           // no object has a mean motion
+  double units_ = 0;                            // per m
   std::vector<IntegerBox> boxes_;
 };
 

@@ -1,0 +1,44 @@
+#pragma once
+// Candidates of one kind: the primitives of two trees whose boxes meet, in an order that depends on the trees alone.
+
+#include <array>
+#include <vector>
+
+#include "runtime/contact/box_tree.h"
+
+namespace ergon {
+
+// How far, in units, the second object may be displaced against the first.
+struct Shift {
+  std::array<int, 3> lower{}, upper{};
+};
+
+class PairList {
+ public:
+  // Both must outlive this.
+  PairList(const BoxTree& a, const BoxTree& b) : a_(&a), b_(&b) {}
+
+  void clear();
+  // Those of an object in the first tree with those of one in the second, which is displaced.
+  void add(int object_a, int object_b, const Shift& shift);
+  // All that was added since clear(). Shared out among threads; the result does not depend on how many there are.
+  void write(std::vector<std::array<int, 2>>& out);
+
+ private:
+  struct Segment {
+    Shift shift;
+    size_t end;  // of its pairs of leaves
+  };
+  void write_range(size_t first, size_t last, size_t thread);
+
+  const BoxTree *a_, *b_;
+  std::vector<lanes::LeafPair> leaves_;
+  std::vector<Segment> segments_;
+  struct Found {
+    std::vector<std::array<int, 2>> pairs;  // as many as there has been room for
+    long count = 0;
+  };
+  std::vector<Found> found_;  // per thread
+};
+
+}  // namespace ergon

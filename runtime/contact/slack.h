@@ -1,0 +1,30 @@
+#pragma once
+// How much farther than asked candidates reach, so that they stay good for what is asked next. The aim is that a list
+// serves through the iterations of a time step: one that serves few requests is made with more slack next time, one
+// that serves many with less. Lists hardly grow as long as slack is small against the primitives themselves.
+
+#include <Eigen/Core>
+
+#include "runtime/contact/collision_surface.h"
+
+namespace ergon {
+
+class Slack {
+ public:
+  // Before each request, whether or not the present list serves it.
+  void ask(double reach);
+
+  // m: the largest reach lately asked for. Requests of active sets and of steps alternate and differ in it.
+  double reach() const { return reach_; }
+
+  // m: for a list that is made at x. `motion`: m, the mean of the points' motion against their objects.
+  double next(const CollisionSurface& surface, const Eigen::Matrix3Xd& x, double motion);
+
+ private:
+  double reach_ = 0, motion_ = 0;
+  double factor_ = 1;
+  long requests_ = 0;  // since the last list
+  bool first_ = true;
+};
+
+}  // namespace ergon
