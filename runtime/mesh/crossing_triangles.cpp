@@ -6,31 +6,19 @@
 #include <unsupported/Eigen/BVH>
 
 #include "runtime/mesh/closed_surface.h"
+#include "runtime/predicates.h"
 
 namespace ergon {
 namespace {
 
 using Corners = std::array<Eigen::Vector3d, 3>;
 
-// Sign of the volume of (a, b, c, d), or 0 when rounding could have changed it.
-int side(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c, const Eigen::Vector3d& d) {
-  const Eigen::Vector3d ad = a - d, bd = b - d, cd = c - d;
-  const double volume = ad.dot(bd.cross(cd));
-  // The sum of the absolute products bounds the rounding error times 7 units (Shewchuk 1997, Adaptive Precision
-  // Floating-Point Arithmetic and Fast Robust Geometric Predicates, orient3d, filter A); 16 leaves room for fused or
-  // reordered operations.
-  const Eigen::Vector3d p = ad.cwiseAbs(), q = bd.cwiseAbs(), r = cd.cwiseAbs();
-  const double magnitude = p.x() * (q.y() * r.z() + q.z() * r.y()) + p.y() * (q.z() * r.x() + q.x() * r.z()) +
-                           p.z() * (q.x() * r.y() + q.y() * r.x());
-  const double bound = 16 * std::numeric_limits<double>::epsilon() * magnitude;
-  return volume > bound ? 1 : volume < -bound ? -1 : 0;
-}
-
+// Whether it surely does: what rounding may have brought about is no crossing.
 bool pierces(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const Corners& t) {
-  const int above = side(t[0], t[1], t[2], from);
-  if (above == 0 || side(t[0], t[1], t[2], to) != -above) return false;
-  const int turn = side(from, to, t[0], t[1]);
-  return turn != 0 && side(from, to, t[1], t[2]) == turn && side(from, to, t[2], t[0]) == turn;
+  const int above = sure_orientation(t[0], t[1], t[2], from);
+  if (above == 0 || sure_orientation(t[0], t[1], t[2], to) != -above) return false;
+  const int turn = sure_orientation(from, to, t[0], t[1]);
+  return turn != 0 && sure_orientation(from, to, t[1], t[2]) == turn && sure_orientation(from, to, t[2], t[0]) == turn;
 }
 
 // Whether `point` is surely on the inner side of the edge from `from` to `to`, in the plane of the axes u and v; `turn`
@@ -45,7 +33,7 @@ bool inner(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const Eigen::
 // Two triangles in one plane overlap when no edge of either separates them.
 bool overlap_in_plane(const Corners& a, const Corners& b) {
   for (const Eigen::Vector3d& point : b) {
-    if (side(a[0], a[1], a[2], point) != 0) return false;
+    if (sure_orientation(a[0], a[1], a[2], point) != 0) return false;
   }
   const Eigen::Vector3d normal = (a[1] - a[0]).cross(a[2] - a[0]);
   int axis = 0;
