@@ -3,34 +3,77 @@
 #include <algorithm>
 
 #include "runtime/contact/ccd.h"
+#include "runtime/lanes/lanes.h"
+#include "runtime/lanes/steps.h"
 
 namespace ergon {
 namespace {
 
-using Step = double (*)(const CcdQuery&);
+using Pair = std::array<int, 2>;
 
-// Gathers the vertices of one pair after the other.
-template <size_t count, class Vertices>
-double over_pairs(const std::vector<std::array<int, 2>>& pairs, const CollisionSurface& surface,
-                  const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& direction, double kept, double longest,
-                  const Step& step, int second, const Vertices& vertices) {
-  double best = longest;
-  const auto size = static_cast<std::ptrdiff_t>(pairs.size());
+// Of pairs that are looked at to begin with, so that most others are seen to be free up to their bound at once.
+constexpr std::ptrdiff_t kSample = 64;
+
+template <size_t N>
+const int (*plain(const std::vector<std::array<int, N>>& items))[N] {
+  return reinterpret_cast<const int(*)[N]>(items.data());
+}
+
+struct Motion {
+  const CollisionSurface& surface;
+  const Eigen::Matrix3Xd& x;
+  const Eigen::Matrix3Xd& direction;
+  double kept;
+
+  double offset(int vertex_a, int vertex_b) const {
+    return surface.offset(surface.object[static_cast<size_t>(vertex_a)], surface.object[static_cast<size_t>(vertex_b)]);
+  }
+  // `second`: the first vertex of the other primitive.
+  template <size_t count>
+  double step(const std::array<int, count>& v, size_t second, double (*of)(const CcdQuery&), double at_most) const {
+    Eigen::Vector3d at[count], motion[count];
+    for (size_t k = 0; k < count; ++k) {
+      at[k] = x.col(v[k]);
+      motion[k] = direction.col(v[k]);
+    }
+    return of({at, motion, offset(v[0], v[second]), kept, at_most});
+  }
+};
+
+// The smallest of at_most and of step(pair, at_most) over every `stride`-th pair. Steps are the smaller of at_most and
+// of what they are without it, so that it makes no difference which pair comes first.
+template <class Step>
+double smallest(const std::vector<Pair>& pairs, std::ptrdiff_t stride, double at_most, const Step& step) {
+  const auto count = static_cast<std::ptrdiff_t>(pairs.size());
+  double best = at_most;
 #pragma omp parallel reduction(min : best)
   {
-    double own = longest;
+    double own = at_most;
 #pragma omp for schedule(static) nowait
-    for (std::ptrdiff_t i = 0; i < size; ++i) {
-      const auto& pair = pairs[static_cast<size_t>(i)];
-      const std::array<int, count> v = vertices(static_cast<size_t>(pair[0]), static_cast<size_t>(pair[1]));
-      Eigen::Vector3d at[count], motion[count];
-      for (size_t k = 0; k < count; ++k) {
-        at[k] = x.col(v[k]);
-        motion[k] = direction.col(v[k]);
-      }
-      const int object_a = surface.object[static_cast<size_t>(v[0])];
-      const int object_b = surface.object[static_cast<size_t>(v[static_cast<size_t>(second)])];
-      own = std::min(own, step({at, motion, surface.offset(object_a, object_b), kept, own}));
+    for (std::ptrdiff_t i = 0; i < count; i += stride) own = step(pairs[static_cast<size_t>(i)], own);
+    best = std::min(best, own);
+  }
+  return best;
+}
+
+// The same over all pairs, of which `filter(pairs, count, at_most, room)` leaves some. All pairs are filtered with one
+// bound, so that the result does not depend on how they are shared out.
+template <class Filter, class Step>
+double smallest_of_many(const std::vector<Pair>& pairs, double at_most, const Filter& filter, const Step& step) {
+  const double bound = smallest(pairs, kSample, at_most, step);
+  if (!(bound > 0)) return 0;
+  const auto count = static_cast<std::ptrdiff_t>(pairs.size());
+  double best = bound;
+#pragma omp parallel reduction(min : best)
+  {
+    double own = bound;
+    lanes::StepRoom room;
+#pragma omp for schedule(static) nowait
+    for (std::ptrdiff_t first = 0; first < count; first += lanes::kSteps) {
+      const Pair* block = pairs.data() + first;
+      const int size = static_cast<int>(std::min<std::ptrdiff_t>(lanes::kSteps, count - first));
+      const int left = filter(block, size, bound, room);
+      for (int i = 0; i < left; ++i) own = step(block[room.left[i]], own);
     }
     best = std::min(best, own);
   }
@@ -41,26 +84,45 @@ double over_pairs(const std::vector<std::array<int, 2>>& pairs, const CollisionS
 
 double largest_step(const CollisionSurface& surface, const Candidates& candidates, const Eigen::Matrix3Xd& x,
                     const Eigen::Matrix3Xd& direction, double kept) {
+  const Motion motion{surface, x, direction, kept};
   const auto& points = surface.points;
   const auto& edges = surface.edges;
   const auto& triangles = surface.triangles;
-  double step = 1;
-  step = over_pairs<4>(candidates.point_triangle, surface, x, direction, kept, step, point_triangle_step, 1,
-                       [&](size_t p, size_t t) {
-                         return std::array<int, 4>{points[p], triangles[t][0], triangles[t][1], triangles[t][2]};
-                       });
-  step = over_pairs<4>(candidates.edge_edge, surface, x, direction, kept, step, edge_edge_step, 2,
-                       [&](size_t a, size_t b) {
-                         return std::array<int, 4>{edges[a][0], edges[a][1], edges[b][0], edges[b][1]};
-                       });
-  step = over_pairs<3>(candidates.point_edge, surface, x, direction, kept, step, point_edge_step, 1,
-                       [&](size_t p, size_t e) {
-                         return std::array<int, 3>{points[p], edges[e][0], edges[e][1]};
-                       });
-  return over_pairs<2>(candidates.point_point, surface, x, direction, kept, step, point_point_step, 1,
-                       [&](size_t p, size_t q) {
-                         return std::array<int, 2>{points[p], points[q]};
-                       });
+  const lanes::StepOperations& operations = lanes::step_operations(lanes::best_lanes());
+  const auto point = [&](int i) { return points[static_cast<size_t>(i)]; };
+  const auto edge = [&](int i) -> const auto& { return edges[static_cast<size_t>(i)]; };
+  const auto triangle = [&](int i) -> const auto& { return triangles[static_cast<size_t>(i)]; };
+
+  double step = smallest_of_many(
+      candidates.point_triangle, 1,
+      [&](const Pair* pairs, int count, double at_most, lanes::StepRoom& room) {
+        for (int i = 0; i < count; ++i) {
+          room.separation[i] = motion.offset(point(pairs[i][0]), triangle(pairs[i][1])[0]);
+        }
+        return operations.point_triangle({x.data(), direction.data(), kept, at_most}, points.data(), plain(triangles),
+                                         reinterpret_cast<const int(*)[2]>(pairs), count, room);
+      },
+      [&](const Pair& pair, double at_most) {
+        const auto& t = triangle(pair[1]);
+        return motion.step<4>({point(pair[0]), t[0], t[1], t[2]}, 1, point_triangle_step, at_most);
+      });
+  step = smallest_of_many(
+      candidates.edge_edge, step,
+      [&](const Pair* pairs, int count, double at_most, lanes::StepRoom& room) {
+        for (int i = 0; i < count; ++i) room.separation[i] = motion.offset(edge(pairs[i][0])[0], edge(pairs[i][1])[0]);
+        return operations.edge_edge({x.data(), direction.data(), kept, at_most}, plain(edges),
+                                    reinterpret_cast<const int(*)[2]>(pairs), count, room);
+      },
+      [&](const Pair& pair, double at_most) {
+        const auto &a = edge(pair[0]), &b = edge(pair[1]);
+        return motion.step<4>({a[0], a[1], b[0], b[1]}, 2, edge_edge_step, at_most);
+      });
+  step = smallest(candidates.point_edge, 1, step, [&](const Pair& pair, double at_most) {
+    return motion.step<3>({point(pair[0]), edge(pair[1])[0], edge(pair[1])[1]}, 1, point_edge_step, at_most);
+  });
+  return smallest(candidates.point_point, 1, step, [&](const Pair& pair, double at_most) {
+    return motion.step<2>({point(pair[0]), point(pair[1])}, 1, point_point_step, at_most);
+  });
 }
 
 }  // namespace ergon

@@ -2,7 +2,7 @@
 
 #include "runtime/lanes/distances.h"
 
-#include "runtime/lanes/projection_vector.h"
+#include "runtime/lanes/point_vector.h"
 
 namespace ergon::lanes {
 
@@ -13,51 +13,6 @@ const DistanceOperations& ERGON_DISTANCES(ERGON_LANES)();
 namespace {
 
 constexpr double kNear = 0x1p-36;  // of the size squared: below it runtime/contact/distance.cpp takes twice the digits
-
-struct Point {
-  Real x, y, z;
-};
-inline Point operator+(const Point& a, const Point& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-inline Point operator-(const Point& a, const Point& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-inline Point operator*(Real s, const Point& a) { return {s * a.x, s * a.y, s * a.z}; }
-inline Real dot(const Point& a, const Point& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-inline Point cross(const Point& a, const Point& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-inline Point select(Mask m, const Point& a, const Point& b) {
-  return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};
-}
-
-inline Point point_of(const DistanceRoom& room, int vertex, int first) {
-  return {load(room.coordinate[3 * vertex] + first), load(room.coordinate[3 * vertex + 1] + first),
-          load(room.coordinate[3 * vertex + 2] + first)};
-}
-
-inline void gather(const double* x, int vertex, int to, int at, DistanceRoom& room) {
-  const double* from = x + 3 * static_cast<long>(vertex);
-  for (int k = 0; k < 3; ++k) room.coordinate[3 * to + k][at] = from[k];
-}
-
-// What is behind the last pair repeats it.
-inline int padded(int count) { return (count + kWidth - 1) / kWidth * kWidth; }
-
-struct OnEdge {
-  Real gap2, part;
-};
-
-// The point of the edge from a to b = a + along that is nearest to the origin, counted from the nearer end.
-inline OnEdge on_edge(const Point& a, const Point& b, const Point& along) {
-  const Real zero = splat(0), from_a = zero - dot(a, along), from_b = dot(b, along);
-  const Mask near_a = less(from_a, from_b);
-  const Real away = select(near_a, from_a, from_b);
-  const Real part =
-      select(near_a, select(less(zero, from_a), splat(3), splat(1)), select(less(zero, from_b), splat(3), splat(2)));
-  // A NaN, of an edge without length, stays one.
-  const Real fraction = select(less(away, zero), zero, away) / (from_a + from_b);
-  const Real step = select(near_a, fraction, zero - fraction);
-  const Point at = select(near_a, a, b) + step * along;
-  return {dot(at, at), part};
-}
 
 inline void keep(int first, Real gap2, Real part, Real size2, DistanceRoom& room) {
   store(room.gap2 + first, select(less_equal(splat(kNear) * size2, gap2), gap2, splat(-1)));
@@ -70,13 +25,13 @@ void point_triangle(const double* x, const int* points, const int (*triangles)[3
   for (int i = 0; i < all; ++i) {
     const int* pair = pairs[i < count ? i : count - 1];
     const int* triangle = triangles[pair[1]];
-    gather(x, points[pair[0]], 0, i, room);
-    for (int k = 0; k < 3; ++k) gather(x, triangle[k], 1 + k, i, room);
+    gather(x, points[pair[0]], 0, i, room.coordinate);
+    for (int k = 0; k < 3; ++k) gather(x, triangle[k], 1 + k, i, room.coordinate);
   }
   const Real zero = splat(0);
   for (int i = 0; i < all; i += kWidth) {
-    const Point p = point_of(room, 0, i), t0 = point_of(room, 1, i), t1 = point_of(room, 2, i),
-                t2 = point_of(room, 3, i);
+    const Point p = point_of(room.coordinate, 0, i), t0 = point_of(room.coordinate, 1, i),
+                t1 = point_of(room.coordinate, 2, i), t2 = point_of(room.coordinate, 3, i);
     const Point a = t0 - p, b = t1 - p, c = t2 - p, ab = t1 - t0, bc = t2 - t1, ca = t0 - t2;
     const OnEdge first = on_edge(a, b, ab), second = on_edge(b, c, bc), third = on_edge(c, a, ca);
     // Ends 1, 2, 3 of the sides become corners: (1, 2, 3), (2, 4, 6), (4, 1, 5).
@@ -106,12 +61,12 @@ void edge_edge(const double* x, const int (*edges)[2], const int (*pairs)[2], in
   const int all = padded(count);
   for (int i = 0; i < all; ++i) {
     const int* pair = pairs[i < count ? i : count - 1];
-    for (int k = 0; k < 4; ++k) gather(x, edges[pair[k / 2]][k % 2], k, i, room);
+    for (int k = 0; k < 4; ++k) gather(x, edges[pair[k / 2]][k % 2], k, i, room.coordinate);
   }
   const Real zero = splat(0), half = splat(0.5), one = splat(1);
   for (int i = 0; i < all; i += kWidth) {
-    const Point a0 = point_of(room, 0, i), a1 = point_of(room, 1, i), b0 = point_of(room, 2, i),
-                b1 = point_of(room, 3, i);
+    const Point a0 = point_of(room.coordinate, 0, i), a1 = point_of(room.coordinate, 1, i),
+                b0 = point_of(room.coordinate, 2, i), b1 = point_of(room.coordinate, 3, i);
     const Point from00 = b0 - a0, from01 = b1 - a0, from10 = b0 - a1, from11 = b1 - a1, a = a1 - a0, b = b1 - b0;
     const Point minus_a = {zero - a.x, zero - a.y, zero - a.z};
     const OnEdge ends[4] = {on_edge(from00, from01, b), on_edge(from10, from11, b), on_edge(from00, from10, minus_a),

@@ -6,7 +6,10 @@
 
 #include "runtime/contact/ccd.h"
 #include "runtime/contact/step_bound.h"
+#include "runtime/lanes/lanes.h"
+#include "runtime/lanes/steps.h"
 #include "tests/runtime/count_allocations.h"
+#include "tools/contact_cases.h"
 
 namespace ergon {
 namespace {
@@ -118,6 +121,72 @@ TEST(ContactStepBound, WithoutCandidatesNothingBoundsTheStep) {
   const Layers l = random_layers(1, 1);
   EXPECT_EQ(largest_step(l.surface, {}, l.x, l.direction), 1);
 }
+
+// What one vector width says to be free is free: the step of each pair by itself is not below the bound.
+class StepLanes : public ::testing::TestWithParam<int> {};
+
+TEST_P(StepLanes, LeaveEveryPairThatIsNotFree) {
+  const int lanes = GetParam();
+  if (lanes > lanes::best_lanes()) GTEST_SKIP() << "this machine has no " << lanes << " lanes";
+  const lanes::StepOperations& operations = lanes::step_operations(lanes);
+  ContactCases cases(1);
+  lanes::StepRoom room;
+  int left_of_free = 0, free_pairs = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    const bool edges = trial % 2 == 0;
+    const int count = trial % 7 == 0 ? 3 : lanes::kSteps;
+    const double kept = cases.uniform(0.05, 0.5), at_most = cases.uniform(0.1, 1);
+    std::vector<FourPoints> x, m;
+    Eigen::Matrix3Xd all_x(3, 4 * count), all_m(3, 4 * count);
+    std::vector<int> points;
+    std::vector<std::array<int, 2>> ends, pairs;
+    std::vector<std::array<int, 3>> triangles;
+    for (int i = 0; i < count; ++i) {
+      const int kind =
+          cases.integer(0, edges ? ContactCases::kEdgeEdgeKinds - 1 : ContactCases::kPointTriangleKinds - 1);
+      x.push_back(edges ? cases.edge_edge(kind) : cases.point_triangle(kind));
+      m.push_back(cases.motion(cases.integer(0, ContactCases::kMotionKinds - 1), x.back(), edges ? 2 : 1));
+      if (trial % 4 < 2) {
+        const ContactCases::Moving moving = cases.near_contact(edges);
+        x.back() = moving.x;
+        m.back() = moving.motion;
+      }
+      for (int k = 0; k < 4; ++k) {
+        all_x.col(4 * i + k) = x.back()[static_cast<size_t>(k)];
+        all_m.col(4 * i + k) = m.back()[static_cast<size_t>(k)];
+      }
+      points.push_back(4 * i);
+      triangles.push_back({4 * i + 1, 4 * i + 2, 4 * i + 3});
+      ends.push_back({4 * i, 4 * i + 1});
+      ends.push_back({4 * i + 2, 4 * i + 3});
+      if (edges) pairs.push_back({2 * i, 2 * i + 1});
+      if (!edges) pairs.push_back({i, i});
+      room.separation[i] = trial % 3 == 0 ? 1e-4 : 0;
+    }
+    const lanes::StepTask task{all_x.data(), all_m.data(), kept, at_most};
+    const auto* list = reinterpret_cast<const int(*)[2]>(pairs.data());
+    const int left =
+        edges ? operations.edge_edge(task, reinterpret_cast<const int(*)[2]>(ends.data()), list, count, room)
+              : operations.point_triangle(task, points.data(), reinterpret_cast<const int(*)[3]>(triangles.data()),
+                                          list, count, room);
+    for (int i = 0, next = 0; i < count; ++i) {
+      const auto at = static_cast<size_t>(i);
+      const CcdQuery query{x[at].data(), m[at].data(), room.separation[i], kept, at_most};
+      const double step = edges ? edge_edge_step(query) : point_triangle_step(query);
+      if (next < left && room.left[next] == i) {
+        ++next;
+        left_of_free += step == at_most ? 1 : 0;
+        continue;
+      }
+      ++free_pairs;
+      EXPECT_NEAR(step, at_most, 1e-3 * at_most) << trial << " " << i;
+    }
+  }
+  EXPECT_GT(free_pairs, 5000);
+  EXPECT_LT(left_of_free, 10000);
+}
+
+INSTANTIATE_TEST_SUITE_P(Widths, StepLanes, ::testing::Values(1, 2, 4, 8));
 
 }  // namespace
 }  // namespace ergon
