@@ -1,5 +1,5 @@
 #pragma once
-// Measurements: kernels on a mesh, the compiler, whole scenes.
+// Measurements: kernels on a mesh, the compiler, contact, whole scenes.
 
 #include <iosfwd>
 #include <string>
@@ -29,5 +29,13 @@ struct BenchCompile {
 };
 // Two rows per energy and case: from nothing, and again with the cache that the first left (the median of five).
 void bench_compile(const BenchCompile& options, Rows& rows);
+
+struct BenchContact {
+  int cells = 199;  // of each cloth, per edge
+  int threads = 1;
+};
+// The parts of contact on two cloths of side 1 m with (cells + 1)^2 vertices each, noisy and close enough for the
+// barrier to act everywhere: one row per part. Throws SourceError and InputError.
+void bench_contact(const BenchContact& options, Rows& rows);
 
 }  // namespace ergon

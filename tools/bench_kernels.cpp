@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "runtime/error.h"
@@ -10,6 +9,7 @@
 #include "tools/bench.h"
 #include "tools/choices.h"
 #include "tools/installation.h"
+#include "tools/median.h"
 #include "tools/problem.h"
 #include "tools/sample.h"
 #include "tools/stencils.h"
@@ -52,24 +52,6 @@ Values usable_values(const Energy& energy, const Kernel& kernel, const std::stri
     if (kernel->actives == 0 || !active_stencils(energy, kernel, mesh, stencils, values, x).empty()) return values;
   }
   throw InputError(fmt::format("no inputs of {} were found at which it is defined; give some with --set", energy.name));
-}
-
-// Seconds of one call.
-template <class Call>
-double median_seconds(const Call& call) {
-  using Clock = std::chrono::steady_clock;
-  call();
-  std::vector<double> seconds;
-  double sum = 0;
-  while (seconds.size() < 5 || (sum < 1 && seconds.size() < 1000)) {
-    const Clock::time_point start = Clock::now();
-    call();
-    seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
-    sum += seconds.back();
-  }
-  const auto middle = seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2);
-  std::nth_element(seconds.begin(), middle, seconds.end());
-  return *middle;
 }
 
 void check_lanes(int given) {

@@ -58,6 +58,23 @@ void add_compile(CLI::App& bench, Run& run) {
   });
 }
 
+void add_contact(CLI::App& bench, Run& run) {
+  CLI::App* command =
+      bench.add_subcommand("contact", "Two noisy cloths that touch: candidates, stencils, barrier, steps");
+  auto options = std::make_shared<BenchContact>();
+  auto json = std::make_shared<bool>(false);
+  command->add_option("--cells", options->cells, "cells per edge of each cloth");
+  command->add_option("--threads", options->threads, "threads to use");
+  command->add_flag("--json", *json, "one JSON object per line instead of a table");
+  command->callback([options, json, &run] {
+    run = [options, json](std::ostream& out) {
+      Rows rows(out, *json);
+      bench_contact(*options, rows);
+      return exit_done;
+    };
+  });
+}
+
 void add_scene(CLI::App& bench, Run& run) {
   CLI::App* command = bench.add_subcommand("scene", "A whole scene: time by part, iterations, memory; writes nothing");
   auto options = std::make_shared<SceneRun>();
@@ -81,10 +98,11 @@ void add_scene(CLI::App& bench, Run& run) {
 }  // namespace
 
 void add_bench_command(CLI::App& app, Run& run) {
-  CLI::App* command = app.add_subcommand("bench", "Measures kernels, the compiler, or a scene");
+  CLI::App* command = app.add_subcommand("bench", "Measures kernels, the compiler, contact, or a scene");
   command->require_subcommand(1);
   add_kernels(*command, run);
   add_compile(*command, run);
+  add_contact(*command, run);
   add_scene(*command, run);
 }
 

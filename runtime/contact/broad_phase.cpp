@@ -5,6 +5,7 @@
 
 #include "runtime/contact/box_tree.h"
 #include "runtime/contact/motion_boxes.h"
+#include "runtime/contact/near_pairs.h"
 #include "runtime/contact/object_pairs.h"
 #include "runtime/contact/slack.h"
 
@@ -84,20 +85,26 @@ struct BroadPhase::Impl {
         loose(tree_of(points_of(s), loose_points(s), s, motion)),
         rods(tree_of(s.edges, rod_edges(s), s, motion)) {}
 
-  void make(const Eigen::Matrix3Xd& x0, const Eigen::Matrix3Xd& x1);
+  void make(const Eigen::Matrix3Xd& x0, const Eigen::Matrix3Xd& x1, double excess);
 
   const CollisionSurface* surface;
   MotionBoxes motion;
   BoxTree points, edges, triangles, loose, rods;
-  PairList point_triangle{points, triangles}, edge_edge{edges, edges}, point_edge{loose, rods},
-      point_point{loose, loose};
+  NearPairs near{*surface};
+  PairList point_triangle{points, triangles, [this](auto* pairs, long n, double drift) {
+                            return near.keep_point_triangle(pairs, n, drift);
+                          }};
+  PairList edge_edge{edges, edges,
+                     [this](auto* pairs, long n, double drift) { return near.keep_edge_edge(pairs, n, drift); }};
+  PairList point_edge{loose, rods}, point_point{loose, loose};
   std::vector<std::array<int, 2>> objects;
   Slack slack;
   Candidates candidates;
 };
 
-void BroadPhase::Impl::make(const Eigen::Matrix3Xd& x0, const Eigen::Matrix3Xd& x1) {
-  motion.make(x0, x1, slack);
+void BroadPhase::Impl::make(const Eigen::Matrix3Xd& x0, const Eigen::Matrix3Xd& x1, double excess) {
+  motion.make(x0, x1, excess, slack);
+  near.prepare(motion, x0);
   for (BoxTree* tree : {&points, &edges, &triangles, &loose, &rods}) tree->fit(motion.boxes());
   for (PairList* list : {&point_triangle, &edge_edge, &point_edge, &point_point}) list->clear();
   find_object_pairs(*surface, motion, points, objects);
@@ -121,8 +128,9 @@ BroadPhase::~BroadPhase() = default;
 
 bool BroadPhase::cover(const Eigen::Matrix3Xd& x0, const Eigen::Matrix3Xd& x1, double reach) {
   impl_->slack.ask(reach);
-  if (impl_->motion.hold(x0, x1, reach)) return false;
-  impl_->make(x0, x1);
+  const double excess = impl_->motion.excess(x0, x1, reach);
+  if (excess <= 0) return false;
+  impl_->make(x0, x1, excess);
   return true;
 }
 

@@ -42,26 +42,29 @@ double MotionBoxes::fraction(const Matrix3Xd& x) const {
   return std::clamp(along / all, 0.0, 1.0);
 }
 
-bool MotionBoxes::hold(const Matrix3Xd& x0, const Matrix3Xd& x1, double reach) const {
-  if (held_.empty()) return false;
+double MotionBoxes::excess(const Matrix3Xd& x0, const Matrix3Xd& x1, double reach) const {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  if (held_.empty()) return surface_->points.empty() ? 0 : infinity;
+  // A smaller reach leaves no more room to move: ranges are balls and would not hold what moves into the corners.
+  const double asked = std::max(reach, reach_);
   const double from = still_ ? 0 : fraction(x0), to = still_ ? 0 : &x1 == &x0 ? from : fraction(x1);
   const auto count = static_cast<std::ptrdiff_t>(held_.size());
-  bool all = true;
-#pragma omp parallel for schedule(static) reduction(&& : all)
+  double most = -infinity;
+#pragma omp parallel for schedule(static) reduction(max : most)
   for (std::ptrdiff_t i = 0; i < count; ++i) {
-    if (!all) continue;
     const int v = surface_->points[static_cast<size_t>(i)];
     const Box& box = held_[static_cast<size_t>(i)];
     const Vector3d& drift = drift_[object_of(v)];
-    const double r = half(reach, v);
-    bool inside = true;
+    const double r = half(asked, v);
     for (int k = 0; k < 3; ++k) {
       const double a = x0(k, v) - from * drift[k], b = x1(k, v) - to * drift[k];
-      inside = inside & (std::min(a, b) - r >= box.lower[k]) & (std::max(a, b) + r <= box.upper[k]);
+      for (const double over :
+           {box.lower[k] + r - a, box.lower[k] + r - b, a + r - box.upper[k], b + r - box.upper[k]}) {
+        if (!(over <= most)) most = std::isnan(over) ? infinity : over;
+      }
     }
-    all = all && inside;
   }
-  return all;
+  return most;
 }
 
 void MotionBoxes::find_drift(const Matrix3Xd& x0, const Matrix3Xd& x1) {
@@ -77,14 +80,14 @@ void MotionBoxes::find_drift(const Matrix3Xd& x0, const Matrix3Xd& x1) {
   for (size_t o = 0; o < count_.size(); ++o) drift_[o] /= std::max(count_[o], 1.0);
 }
 
-void MotionBoxes::make(const Matrix3Xd& x0, const Matrix3Xd& x1, Slack& chosen) {
+void MotionBoxes::make(const Matrix3Xd& x0, const Matrix3Xd& x1, double excess, Slack& chosen) {
   held_.clear();
   find_drift(x0, x1);
   double motion = 0;
   for (const int v : surface_->points) motion += (x1.col(v) - x0.col(v) - drift_[object_of(v)]).norm();
-  const double slack =
-      chosen.next(*surface_, x0, motion / std::max<double>(1, static_cast<double>(surface_->points.size())));
-  const double reach = chosen.reach();
+  motion /= std::max(1.0, static_cast<double>(surface_->points.size()));
+  const double slack = chosen.next(*surface_, x0, motion, excess);
+  reach_ = chosen.reach();
   still_ = true;
   for (Vector3d& drift : drift_) {
     if (drift.norm() <= kDrift * slack) drift.setZero();
@@ -93,6 +96,7 @@ void MotionBoxes::make(const Matrix3Xd& x0, const Matrix3Xd& x1, Slack& chosen) 
   const auto count = static_cast<std::ptrdiff_t>(surface_->points.size());
   held_.resize(static_cast<size_t>(count));
   boxes_.resize(static_cast<size_t>(count));
+  range_.resize(static_cast<size_t>(count));
   Array3d lowest = Array3d::Constant(std::numeric_limits<double>::infinity()), highest = -lowest;
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     const int v = surface_->points[static_cast<size_t>(i)];
@@ -100,10 +104,12 @@ void MotionBoxes::make(const Matrix3Xd& x0, const Matrix3Xd& x1, Slack& chosen) 
     // What the subtractions here and in hold() may round.
     const double size = a.abs().maxCoeff() + b.abs().maxCoeff() + 2 * drift.abs().maxCoeff();
     const double rounding = 4 * std::numeric_limits<double>::epsilon() * size;
-    const Array3d spare = half(reach, v) + slack + rounding + kSpare * (b - a).abs();
+    const double r = half(reach_, v);
+    const Array3d spare = r + slack + rounding + kSpare * (b - a).abs();
     Box& box = held_[static_cast<size_t>(i)];
     box.lower = a.min(b) - spare;
     box.upper = a.max(b) + spare;
+    range_[static_cast<size_t>(i)] = r + (a - r - box.lower.array()).max(box.upper.array() - r - a).matrix().norm();
     lowest = lowest.min(box.lower.array() + drift.min(0));
     highest = highest.max(box.upper.array() + drift.max(0));
   }
@@ -123,6 +129,7 @@ void MotionBoxes::make(const Matrix3Xd& x0, const Matrix3Xd& x1, Slack& chosen) 
 
 Shift MotionBoxes::in_units(const Vector3d& move) const {
   Shift shift;
+  shift.length = move.norm();
   for (int k = 0; k < 3; ++k) {
     const auto at = static_cast<size_t>(k);
     if (move[k] < 0) shift.lower[at] = static_cast<int>(move[k] * units_) - 2;

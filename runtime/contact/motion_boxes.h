@@ -22,15 +22,19 @@ class MotionBoxes {
   // Vertices of the system have numbers of their own here, in the order of surface.points; -1: it is no point.
   int number_of(int vertex) const { return number_[static_cast<size_t>(vertex)]; }
 
-  // Whether boxes were made that hold each point, by half of reach and its radius, on the way from x0 to x1.
-  bool hold(const Eigen::Matrix3Xd& x0, const Eigen::Matrix3Xd& x1, double reach) const;
+  // m: how far a point, with half of reach and its radius, leaves its box on the way from x0 to x1, at most. At most 0:
+  // the boxes that were made hold this motion; +inf while none were.
+  double excess(const Eigen::Matrix3Xd& x0, const Eigen::Matrix3Xd& x1, double reach) const;
 
-  // Makes boxes for this motion, for the reach that `slack` knows; they leave each point its slack and a quarter of its
-  // motion against its object to spare. Throws InputError for a point without finite position.
-  void make(const Eigen::Matrix3Xd& x0, const Eigen::Matrix3Xd& x1, Slack& slack);
+  // Makes boxes for this motion, whose excess over the last ones is given, and for the reach that `slack` knows; they
+  // leave each point its slack and a quarter of its motion against its object to spare. Throws InputError for a point
+  // without finite position.
+  void make(const Eigen::Matrix3Xd& x0, const Eigen::Matrix3Xd& x1, double excess, Slack& slack);
 
   const std::vector<IntegerBox>& boxes() const { return boxes_; }  // in units that fit all into an int
-  Shift shift(int object_a, int object_b) const;                   // on the way
+  // m, per point: how far from its start, seen from its object, it may act: its motion, radius and half of reach.
+  const std::vector<double>& range() const { return range_; }
+  Shift shift(int object_a, int object_b) const;  // on the way
   // Where an object is on the way, in its box or displaced by its motion.
   Shift drift(int object) const;
 
@@ -51,8 +55,10 @@ class MotionBoxes {
   std::vector<Box> held_;                       // per point
   std::vector<Eigen::Vector3d> start_, drift_;  // per object: sum of points and mean motion, m
   bool still_ = true;                           // no object has a mean motion
+  double reach_ = 0;                            // m
   double units_ = 0;                            // per m
   std::vector<IntegerBox> boxes_;
+  std::vector<double> range_;
 };
 
 }  // namespace ergon

@@ -37,6 +37,7 @@ void PairList::write_range(size_t first, size_t last, size_t thread) {
     std::copy(segment->shift.lower.begin(), segment->shift.lower.end(), task.shift_lower);
     std::copy(segment->shift.upper.begin(), segment->shift.upper.end(), task.shift_upper);
     const size_t end = std::min(last, segment->end);
+    const long before = found.count;
     while (first < end) {
       if (static_cast<long>(found.pairs.size()) < found.count + lanes::kMostOverlaps) {
         found.pairs.resize(2 * found.pairs.size() + 16 * static_cast<size_t>(lanes::kMostOverlaps));
@@ -46,6 +47,8 @@ void PairList::write_range(size_t first, size_t last, size_t thread) {
                                                   reinterpret_cast<lanes::IdPair*>(found.pairs.data() + found.count),
                                                   static_cast<long>(found.pairs.size()) - found.count, &found.count));
     }
+    if (filter_)
+      found.count = before + filter_(found.pairs.data() + before, found.count - before, segment->shift.length);
   }
 }
 

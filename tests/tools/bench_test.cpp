@@ -117,6 +117,26 @@ TEST_F(Bench, CompileTellsTheSlowest) {
   }
 }
 
+TEST_F(Bench, ContactTellsWhatEachPartCosts) {
+  const std::vector<Json> all = rows("contact --cells 8");
+  std::vector<std::string> parts;
+  for (const Json& row : all) {
+    EXPECT_THAT(fields(row), ElementsAre("part", "of", "count", "threads", "ms", "ns_each", "allocations"));
+    EXPECT_GT(row["count"], 100) << row;
+    EXPECT_GT(row["ms"], 0) << row;
+    EXPECT_NEAR(row["ns_each"].get<double>() * row["count"].get<double>(), 1e6 * row["ms"].get<double>(), 1e-6) << row;
+    parts.push_back(row["part"]);
+    // The lists of pairs and stencils ask for no memory once they have run.
+    if (parts.back() == "candidates updated" || parts.back() == "candidates kept" || parts.back() == "active set") {
+      EXPECT_EQ(row["allocations"], 0) << row;
+    }
+  }
+  EXPECT_THAT(parts, ElementsAre("candidates from nothing", "candidates updated", "candidates kept", "active set",
+                                 "stencil lists", "barrier value", "barrier gradient", "barrier Hessian", "step bound",
+                                 "Newton iteration"));
+  EXPECT_EQ(ergon("bench contact --cells 0").err, "ergon: error: 0 cells per edge; at least 1 is needed\n");
+}
+
 TEST_F(Bench, SceneTellsTimeByPartIterationsAndMemory) {
   write("s.toml",
         "[time]\ndt = 0.01\nsteps = 3\n[[object]]\nname = \"b\"\nbox = { size = [0.1, 0.1, 0.1], cells = [1, 1, 1] }\n"
