@@ -30,6 +30,15 @@ struct BenchCompile {
 // Two rows per energy and case: from nothing, and again with the cache that the first left (the median of five).
 void bench_compile(const BenchCompile& options, Rows& rows);
 
+struct BenchCcd {
+  long queries = 100000;  // over all rows; subdivision, which is slow, does a twentieth of its share
+  double kept = 0.1;      // fraction of each gap that steps leave
+};
+// Continuous collision detection by itself, on one thread, by both methods: random queries near contact and adversarial
+// ones. Times per query; every answer is judged by a decision without rounding. Throws InputError for options out of
+// range.
+void bench_ccd(const BenchCcd& options, Rows& rows);
+
 struct BenchContact {
   int cells = 199;  // of each cloth, per edge
   int threads = 1;

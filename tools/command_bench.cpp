@@ -75,6 +75,23 @@ void add_contact(CLI::App& bench, Run& run) {
   });
 }
 
+void add_ccd(CLI::App& bench, Run& run) {
+  CLI::App* command =
+      bench.add_subcommand("ccd", "Continuous collision detection: time, false positives, missed collisions");
+  auto options = std::make_shared<BenchCcd>();
+  auto json = std::make_shared<bool>(false);
+  command->add_option("--queries", options->queries, "how many, over all rows");
+  command->add_option("--kept", options->kept, "fraction of a gap that is left, in (0, 1)");
+  command->add_flag("--json", *json, "one JSON object per line instead of a table");
+  command->callback([options, json, &run] {
+    run = [options, json](std::ostream& out) {
+      Rows rows(out, *json);
+      bench_ccd(*options, rows);
+      return exit_done;
+    };
+  });
+}
+
 void add_scene(CLI::App& bench, Run& run) {
   CLI::App* command = bench.add_subcommand("scene", "A whole scene: time by part, iterations, memory; writes nothing");
   auto options = std::make_shared<SceneRun>();
@@ -103,6 +120,7 @@ void add_bench_command(CLI::App& app, Run& run) {
   add_kernels(*command, run);
   add_compile(*command, run);
   add_contact(*command, run);
+  add_ccd(*command, run);
   add_scene(*command, run);
 }
 

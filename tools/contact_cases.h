@@ -125,6 +125,14 @@ class ContactCases {
     return m;
   }
 
+  // Any placement with any motion.
+  Moving any(bool edges) {
+    Moving m;
+    m.x = edges ? edge_edge(integer(0, kEdgeEdgeKinds - 1)) : point_triangle(integer(0, kPointTriangleKinds - 1));
+    m.motion = motion(integer(0, kMotionKinds - 1), m.x, edges ? 2 : 1);
+    return m;
+  }
+
   static constexpr int kMotionKinds = 11;
   // Displacements of points at x, of which the first `first` are of one primitive.
   FourPoints motion(int kind, const FourPoints& x, size_t first) {

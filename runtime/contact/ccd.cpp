@@ -8,10 +8,15 @@
 #include "runtime/double_double.h"
 
 // The distance of two convex primitives is that of the origin from the hull of the differences of their corners,
-// from[k] + t*rate[k]. For any direction n, |n| <= 1, it is at least the least of dot(n, from[k]) + t*dot(n, rate[k]):
-// linear functions of time, so that where they are above the limit at t and at t1, the distance is so in between. Any n
-// gives a true bound; that of the nearest points gives a tight one. All rounding is in the dot products, which start
-// from differences of what is given and are therefore off by at most rounding<T>*(|from| + |rate|), and in |n|.
+// from[k] + t*rate[k]. Across any direction n it is at least the least of dot(n, from[k] + t*rate[k])/|n|. Any n gives
+// a true bound; that of the nearest points, or of the normal that holds them, gives a tight one. Two planes are tried
+// from a time on at which all is known to be apart, and the one that lasts longer is taken:
+// - n at rest: sums that are linear in time, above the limit in between two times where they are so;
+// - n that turns with the parts, n0 + t*n1 with |n0| = 1 and dot(n0, n1) = 0: |n| <= 1 + |n1|^2 t^2/2, so that sums of
+//   second order in time are to stay above zero. It lasts up to |n1| t = 1 at most.
+// All rounding is in the dot products, which start from differences of what is given: with |n| <= 2 and t <= 1 it is
+// below rounding<T>*(|from| + |rate|), that of times included, which has been added to the limit. Roots are rounded
+// down.
 
 namespace ergon {
 namespace {
@@ -19,22 +24,23 @@ namespace {
 using nearest::Vector;
 
 constexpr double kUnit = 0x1p-53;
-// Each of the sums above has two roundings of differences and products and up to five of sums; nearest points have
-// some more.
+// Each sum above is of products that are rounded up to five times before and five times while they are summed.
 template <class T>
-constexpr double rounding = std::is_same_v<T, double> ? 0x1p-48 : 0x1p-94;
+constexpr double rounding = std::is_same_v<T, double> ? 0x1p-47 : 0x1p-93;
 constexpr double kLess = 1 - 16 * kUnit, kMore = 1 + 16 * kUnit;
 constexpr double kGain = 0x1p-12;  // of the step: what is not worth another round
 constexpr int kRounds = 128;
+constexpr double kLonger = 2;  // than any step
 
 template <class T, int corners>
 struct Hull {
   Vector<T> from[corners], rate[corners];
 };
-template <class T>
-struct Toward {
-  double distance2 = 0;  // from the origin
-  Vector<T> direction{};
+template <class T, int corners>
+struct Now {  // at some time
+  Vector<T> at[corners];
+  double distance2 = 0;           // of a point of the hull from the origin
+  Vector<T> direction{}, turn{};  // of any length; the rate of change of the direction, where the parts make it turn
 };
 
 template <class T>
@@ -45,67 +51,81 @@ template <class T>
 Vector<T> flip(const Vector<T>& a) {
   return {-a.x, -a.y, -a.z};
 }
-template <class T>
-Vector<T> at_time(const Vector<T>& from, const Vector<T>& rate, const T& t) {
-  return from + t * rate;
-}
-
 // Where the gap is far below the size of the parts, the difference of nearest points has lost its direction. The normal
 // of the parts has not.
-template <class T>
-Vector<T> along_normal(const Vector<T>& at, const Vector<T>& normal) {
-  return nearest::dot(at, normal) < T(0.0) ? flip(normal) : normal;
+template <class T, int corners>
+void along_normal(const Vector<T>& between, const Vector<T>& a, const Vector<T>& b, const Vector<T>& rate_a,
+                  const Vector<T>& rate_b, Now<T, corners>& now) {
+  now.direction = nearest::cross(a, b);
+  now.turn = nearest::cross(rate_a, b) + nearest::cross(a, rate_b);
+  if (nearest::dot(between, now.direction) < T(0.0)) {
+    now.direction = flip(now.direction);
+    now.turn = flip(now.turn);
+  }
 }
-template <class T>
-Vector<T> off_edge(const Vector<T>& at, const Vector<T>& along) {
-  const T length2 = nearest::dot(along, along);
-  if (!(length2 > T(0.0))) return at;
-  return at - (nearest::dot(at, along) / length2) * along;
-}
-
-template <class T>
-Toward<T> toward(const Hull<T, 1>& hull, const T& t) {
-  const Vector<T> at = at_time(hull.from[0], hull.rate[0], t);
-  return {static_cast<double>(nearest::dot(at, at)), at};
-}
-
-template <class T>
-Toward<T> toward(const Hull<T, 2>& hull, const T& t) {
-  const Vector<T> a = at_time(hull.from[0], hull.rate[0], t), b = at_time(hull.from[1], hull.rate[1], t);
-  const auto found = nearest::on_edge(a, b, b - a);
-  return {static_cast<double>(found.gap2), found.part == 3 ? off_edge(found.at, b - a) : found.at};
+template <class T, int corners>
+void off_edge(const Vector<T>& between, const Vector<T>& edge, const Vector<T>& rate, Now<T, corners>& now) {
+  const T length2 = nearest::dot(edge, edge);
+  if (!(length2 > T(0.0))) return;
+  const T scale = T(1.0) / length2;
+  now.direction = between - (scale * nearest::dot(between, edge)) * edge;
+  now.turn = (-(scale * nearest::dot(now.direction, rate))) * edge;
 }
 
 template <class T>
-Toward<T> toward(const Hull<T, 3>& hull, const T& t) {
-  const Vector<T> a = at_time(hull.from[0], hull.rate[0], t), b = at_time(hull.from[1], hull.rate[1], t),
-                  c = at_time(hull.from[2], hull.rate[2], t);
-  const Vector<T> ab = b - a, bc = c - b, ca = a - c;
-  const auto found = nearest::on_triangle(a, b, c, ab, bc, ca);
-  Toward<T> result{static_cast<double>(found.gap2), found.at};
-  if (found.part == 7) result.direction = along_normal(found.at, nearest::cross(ab, bc));
-  if (found.part == 3) result.direction = off_edge(found.at, ab);
-  if (found.part == 6) result.direction = off_edge(found.at, bc);
-  if (found.part == 5) result.direction = off_edge(found.at, ca);
-  return result;
+void find_direction(const Hull<T, 1>&, Now<T, 1>& now) {
+  now.direction = now.at[0];
+  now.distance2 = static_cast<double>(nearest::dot(now.at[0], now.at[0]));
+}
+
+template <class T>
+void find_direction(const Hull<T, 2>& hull, Now<T, 2>& now) {
+  const Vector<T> edge = now.at[1] - now.at[0];
+  const auto found = nearest::on_edge(now.at[0], now.at[1], edge);
+  now.distance2 = static_cast<double>(found.gap2);
+  now.direction = found.at;
+  if (found.part == 3) off_edge(found.at, edge, hull.rate[1] - hull.rate[0], now);
+}
+
+template <class T>
+void find_direction(const Hull<T, 3>& hull, Now<T, 3>& now) {
+  const Vector<T> side[3] = {now.at[1] - now.at[0], now.at[2] - now.at[1], now.at[0] - now.at[2]};
+  const auto found = nearest::on_triangle(now.at[0], now.at[1], now.at[2], side[0], side[1], side[2]);
+  now.distance2 = static_cast<double>(found.gap2);
+  now.direction = found.at;
+  const auto rate = [&](int k) { return hull.rate[(k + 1) % 3] - hull.rate[k]; };
+  if (found.part == 7) along_normal(found.at, side[0], side[1], rate(0), rate(1), now);
+  if (found.part == 3) off_edge(found.at, side[0], rate(0), now);
+  if (found.part == 6) off_edge(found.at, side[1], rate(1), now);
+  if (found.part == 5) off_edge(found.at, side[2], rate(2), now);
 }
 
 // Corners: a0 to b0, a0 to b1, a1 to b0, a1 to b1.
 template <class T>
-Toward<T> toward(const Hull<T, 4>& hull, const T& t) {
-  Vector<T> at[4];
-  for (int k = 0; k < 4; ++k) at[k] = at_time(hull.from[k], hull.rate[k], t);
-  const Vector<T> a = at[0] - at[2], b = at[1] - at[0];
-  const auto found = nearest::of_edges(at[0], at[1], at[2], at[3], a, b);
-  Toward<T> result{static_cast<double>(found.gap2), found.at};
+void find_direction(const Hull<T, 4>& hull, Now<T, 4>& now) {
+  const Vector<T> a = now.at[0] - now.at[2], b = now.at[1] - now.at[0];
+  const Vector<T> rate_a = hull.rate[0] - hull.rate[2], rate_b = hull.rate[1] - hull.rate[0];
+  const auto found = nearest::of_edges(now.at[0], now.at[1], now.at[2], now.at[3], a, b);
+  now.distance2 = static_cast<double>(found.gap2);
+  now.direction = found.at;
   if (found.part_a == 3 && found.part_b == 3) {
-    result.direction = along_normal(found.at, nearest::cross(a, b));
+    along_normal(found.at, a, b, rate_a, rate_b, now);
   } else if (found.part_a == 3) {
-    result.direction = off_edge(found.at, a);
+    off_edge(found.at, a, rate_a, now);
   } else if (found.part_b == 3) {
-    result.direction = off_edge(found.at, b);
+    off_edge(found.at, b, rate_b, now);
   }
-  return result;
+}
+
+// A time up to which c + b*t + a*t^2 stays above zero, for c > 0, that is not needlessly below the first root.
+double first_root(double a, double b, double c) {
+  const double square = b * b, product = 4 * a * c;
+  if (a >= 0) {
+    if (b >= 0 || product > kMore * square) return std::numeric_limits<double>::infinity();
+    return kLess * 2 * c / (std::sqrt(std::max(0.0, square - product) + 8 * kUnit * square) - b);
+  }
+  const double root = std::sqrt(square - product);
+  return kLess * (b > 0 ? (b + root) / (-2 * a) : 2 * c / (root - b));
 }
 
 // A step and whether the start could be shown to be apart.
@@ -124,25 +144,39 @@ Step search(const Hull<T, corners>& hull, const CcdQuery& query) {
   const double error = rounding<T> * (size + speed);
   double limit = 0, step = 0;
   for (int round = 0; round < kRounds; ++round) {
-    const Toward<T> found = toward(hull, T(step));
+    Now<T, corners> now;
+    for (int k = 0; k < corners; ++k) now.at[k] = hull.from[k] + T(step) * hull.rate[k];
+    find_direction(hull, now);
     if (round == 0) {
-      const double gap = kMore * std::sqrt(found.distance2) + error;  // not below the true one
+      const double gap = kMore * std::sqrt(now.distance2) + error;  // not below the true one
       const double target = query.separation + query.kept * std::max(0.0, gap - query.separation);
       limit = kMore * target + error;  // kMore: also of |n|
       // Twice the digits where rounding is a large part of the way there is.
       if (std::is_same_v<T, double> && !(error < 0x1p-10 * (gap - target))) return {};
     }
-    const Vector<T>& n = found.direction;
-    const double length2 = static_cast<double>(nearest::dot(n, n));
+    const double length2 = static_cast<double>(nearest::dot(now.direction, now.direction));
     if (!(length2 > std::numeric_limits<double>::min())) return {round > 0, step};
-    const Vector<T> unit = T(1 / std::sqrt(length2)) * n;
-    double next = 1;
+    const T scale(1 / std::sqrt(length2));
+    const Vector<T> n0 = scale * now.direction;
+    double start[corners], rate[corners], lasts = kLonger;
     for (int k = 0; k < corners; ++k) {
-      const T start = nearest::dot(unit, hull.from[k]) - T(limit), rate = nearest::dot(unit, hull.rate[k]);
-      if (!(static_cast<double>(start + T(step) * rate) > 0)) return {round > 0, step};
-      const double distance = static_cast<double>(start), approach = -static_cast<double>(rate);
-      if (distance < next * approach) next = kLess * (distance / approach);
+      start[k] = static_cast<double>(nearest::dot(n0, now.at[k]) - T(limit));
+      rate[k] = static_cast<double>(nearest::dot(n0, hull.rate[k]));
+      if (!(start[k] > 0)) return {round > 0, step};
+      if (start[k] < -rate[k] * lasts) lasts = kLess * (start[k] / -rate[k]);
     }
+    if (kLess * (step + lasts) < query.at_most) {
+      const Vector<T> n1 = scale * now.turn - (scale * nearest::dot(n0, now.turn)) * n0;
+      const double turn2 = static_cast<double>(nearest::dot(n1, n1));
+      double turning = std::min(kLonger, kLess / std::sqrt(turn2));
+      for (int k = 0; k < corners; ++k) {
+        const double first = rate[k] + static_cast<double>(nearest::dot(n1, now.at[k]));
+        const double second = static_cast<double>(nearest::dot(n1, hull.rate[k])) - kMore * limit * turn2 / 2;
+        turning = std::min(turning, first_root(second, first, start[k]));
+      }
+      lasts = std::max(lasts, turning);
+    }
+    const double next = kLess * (step + lasts);
     if (next >= query.at_most) return {true, query.at_most};
     if (next - step <= kGain * next) return {true, std::max(next, step)};
     step = next;

@@ -63,20 +63,25 @@ inline Nearest<T, 2> on_edge(const Vector<T>& a, const Vector<T>& b, const Vecto
   return {dot(at, at), 3, {near_a ? one - less : less, near_a ? less : one - less}, at};
 }
 
+// Whether the angle of two vectors, with the square of their cross product and the product of their squares, is so far
+// from zero that what is nearest within their span is known as well as what is nearest on one of them.
+template <class T>
+inline bool far_from_parallel(const T& normal2, const T& lengths2) {
+  return normal2 > T(0x1p-16) * lengths2;
+}
+
 // The triangle (a, b, c); ab = b - a, bc = c - b, ca = a - c.
 template <class T>
 inline Nearest<T, 3> on_triangle(const Vector<T>& a, const Vector<T>& b, const Vector<T>& c, const Vector<T>& ab,
                                  const Vector<T>& bc, const Vector<T>& ca) {
   const T zero(0.0);
-  const Nearest<T, 2> sides[3] = {on_edge(a, b, ab), on_edge(b, c, bc), on_edge(c, a, ca)};
-  int best = 0;
-  if (sides[1].gap2 < sides[best].gap2) best = 1;
-  if (sides[2].gap2 < sides[best].gap2) best = 2;
   const Vector<T> normal = cross(ab, bc);
   const T wa = dot(normal, cross(b, bc)), wb = dot(normal, cross(c, ca)), wc = dot(normal, cross(a, ab));
-  if (wa > zero && wb > zero && wc > zero) {
+  Nearest<T, 3> face{};
+  const bool inside = wa > zero && wb > zero && wc > zero;
+  if (inside) {
     const T scale = T(1.0) / (wa + wb + wc);
-    Nearest<T, 3> face{zero, 7, {scale * wa, scale * wb, scale * wc}, {}};
+    face = {zero, 7, {scale * wa, scale * wb, scale * wc}, {}};
     face.at = face.weight[0] * a + face.weight[1] * b + face.weight[2] * c;
     if constexpr (!std::is_same_v<T, double>) {
       // Slivers: what is left along the face is solved for once more.
@@ -87,8 +92,13 @@ inline Nearest<T, 3> on_triangle(const Vector<T>& a, const Vector<T>& b, const V
       face.at = face.at + da * ca - db * bc;
     }
     face.gap2 = dot(face.at, face.at);
-    if (face.gap2 < sides[best].gap2) return face;
+    if (far_from_parallel(dot(normal, normal), dot(ab, ab) * dot(bc, bc))) return face;
   }
+  const Nearest<T, 2> sides[3] = {on_edge(a, b, ab), on_edge(b, c, bc), on_edge(c, a, ca)};
+  int best = 0;
+  if (sides[1].gap2 < sides[best].gap2) best = 1;
+  if (sides[2].gap2 < sides[best].gap2) best = 2;
+  if (inside && face.gap2 < sides[best].gap2) return face;
   const Nearest<T, 2>& side = sides[best];
   Nearest<T, 3> result{side.gap2, 0, {zero, zero, zero}, side.at};
   const int first = best, second = (best + 1) % 3;
@@ -112,24 +122,18 @@ template <class T>
 inline NearestOfEdges<T> of_edges(const Vector<T>& from00, const Vector<T>& from01, const Vector<T>& from10,
                                   const Vector<T>& from11, const Vector<T>& a, const Vector<T>& b) {
   const T zero(0.0), one(1.0);
-  // Each end with the other edge.
-  const Vector<T> minus_a{-a.x, -a.y, -a.z};
-  const Nearest<T, 2> ends[4] = {on_edge(from00, from01, b), on_edge(from10, from11, b),
-                                 on_edge(from00, from10, minus_a), on_edge(from01, from11, minus_a)};
-  int best = 0;
-  for (int i = 1; i < 4; ++i) {
-    if (ends[i].gap2 < ends[best].gap2) best = i;
-  }
   // The insides: dot(from, a) = dot(from, b) = 0 for from = from00 - s*a + t*b, solved with the common normal.
   const Vector<T> normal = cross(a, b);
   const T n2 = dot(normal, normal);
   const T s = dot(cross(from00, b), normal), t = dot(cross(from00, a), normal);
-  if (s > zero && t > zero && s < n2 && t < n2) {
+  NearestOfEdges<T> inside{};
+  const bool within = s > zero && t > zero && s < n2 && t < n2;
+  if (within) {
     const T scale = one / n2, ws = s * scale, wt = t * scale;
     // From the nearer ends.
     const bool second_a = ws > T(0.5), second_b = wt > T(0.5);
     const Vector<T>& base = second_a ? (second_b ? from11 : from10) : (second_b ? from01 : from00);
-    NearestOfEdges<T> inside{zero, 3, 3, {one - ws, ws}, {one - wt, wt}, {}};
+    inside = {zero, 3, 3, {one - ws, ws}, {one - wt, wt}, {}};
     inside.at = base - (second_a ? ws - one : ws) * a + (second_b ? wt - one : wt) * b;
     if constexpr (!std::is_same_v<T, double>) {
       // Nearly parallel edges: what is left along them is solved for once more.
@@ -141,8 +145,17 @@ inline NearestOfEdges<T> of_edges(const Vector<T>& from00, const Vector<T>& from
       inside.at = inside.at - ds * a + dt * b;
     }
     inside.gap2 = dot(inside.at, inside.at);
-    if (inside.gap2 < ends[best].gap2) return inside;
+    if (far_from_parallel(n2, dot(a, a) * dot(b, b))) return inside;
   }
+  // Each end with the other edge.
+  const Vector<T> minus_a{-a.x, -a.y, -a.z};
+  const Nearest<T, 2> ends[4] = {on_edge(from00, from01, b), on_edge(from10, from11, b),
+                                 on_edge(from00, from10, minus_a), on_edge(from01, from11, minus_a)};
+  int best = 0;
+  for (int i = 1; i < 4; ++i) {
+    if (ends[i].gap2 < ends[best].gap2) best = i;
+  }
+  if (within && inside.gap2 < ends[best].gap2) return inside;
   const Nearest<T, 2>& end = ends[best];
   NearestOfEdges<T> result{end.gap2, 0, 0, {zero, zero}, {zero, zero}, end.at};
   const int corner = best & 1;

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "runtime/contact/ccd.h"
+#include "runtime/contact/ccd_inclusion.h"
 #include "tests/runtime/exact_distance.h"
 #include "tools/contact_cases.h"
 #include "tools/exact_collision.h"
@@ -198,6 +199,30 @@ TEST(ContactCcd, FewFalsePositives) {
       EXPECT_FALSE(step > 0 && pair.collides(m.x.data(), m.motion.data(), step)) << trial;
     }
     EXPECT_LT(shortened, 0.03 * trials) << pair.name;
+  }
+}
+
+// Both methods establish the same; what one gets out of it the other does, but for what each stops short.
+TEST(ContactCcd, SubdivisionAgrees) {
+  ContactCases cases(8);
+  for (const Pair& pair : kPairs) {
+    const auto subdivided = pair.edges ? edge_edge_step_by_inclusion : point_triangle_step_by_inclusion;
+    int close = 0, trials = 300;
+    for (int trial = 0; trial < trials; ++trial) {
+      const ContactCases::Moving m = cases.near_contact(pair.edges);
+      const double step = pair.step({m.x.data(), m.motion.data()}), other = subdivided({m.x.data(), m.motion.data()});
+      ASSERT_TRUE(other >= 0 && other <= 1);
+      EXPECT_FALSE(other > 0 && pair.collides(m.x.data(), m.motion.data(), other)) << trial;
+      EXPECT_FALSE(other > 0 && step < 1 && other > 1.3 * step) << trial << ": " << other << " and " << step;
+      close += other > 0.9 * step ? 1 : 0;
+    }
+    EXPECT_GT(close, 0.95 * trials) << pair.name;
+    for (int trial = 0; trial < 100; ++trial) {
+      const ContactCases::Moving m = cases.any(pair.edges);
+      const double other = subdivided({m.x.data(), m.motion.data(), 0, 0.1, 0.5});
+      EXPECT_TRUE(other >= 0 && other <= 0.5);
+      EXPECT_FALSE(other > 0 && pair.collides(m.x.data(), m.motion.data(), other)) << trial;
+    }
   }
 }
 

@@ -154,5 +154,23 @@ TEST_F(Bench, SceneTellsTimeByPartIterationsAndMemory) {
   EXPECT_FALSE(std::filesystem::exists(folder / "out"));
 }
 
+TEST_F(Bench, CcdMissesNothingByEitherMethod) {
+  const std::vector<Json> all = rows("ccd --queries 4000");
+  ASSERT_EQ(all.size(), 8u);
+  for (const Json& row : all) {
+    EXPECT_THAT(fields(row), ElementsAre("set", "method", "primitives", "queries", "median_ns", "mean_ns", "p99_ns",
+                                         "false_positives", "without_step", "missed"));
+    EXPECT_EQ(row["missed"], 0) << row;
+    EXPECT_EQ(row["queries"], row["method"] == "additive" ? 1000 : 50);
+    EXPECT_GT(row["median_ns"], 0);
+    if (row["set"] == "near_contact") {
+      EXPECT_EQ(row["without_step"], 0) << row;
+      EXPECT_LT(row["false_positives"], row["method"] == "additive" ? 0.03 : 0.1) << row;
+    }
+  }
+  EXPECT_EQ(ergon("bench ccd --queries 3").err, "ergon: error: 3 queries; at least 100 are needed\n");
+  EXPECT_EQ(ergon("bench ccd --kept 1").err, "ergon: error: --kept 1: it is a fraction above 0 and below 1\n");
+}
+
 }  // namespace
 }  // namespace ergon
