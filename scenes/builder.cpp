@@ -43,14 +43,14 @@ WorldLaws world_laws(const Scene& scene, Laws& laws, std::vector<std::string>& s
   else
     out.gravity = &laws.get("gravity", whole);
   if (scene.grounds.empty()) {
-    skipped.push_back("ground_barrier, ground_friction: there is no ground, no kernels loaded");
+    skipped.push_back("log_barrier, friction: there is no ground, no kernels loaded");
     return out;
   }
-  out.barrier = &laws.get("ground_barrier", whole);
+  out.barrier = &laws.get("log_barrier:half_space", whole);
   if (std::any_of(scene.grounds.begin(), scene.grounds.end(), [](const SceneGround& g) { return g.mu > 0; }))
-    out.friction = &laws.get("ground_friction", whole);
+    out.friction = &laws.get("friction", whole);
   else
-    skipped.push_back("ground_friction: no ground has a coefficient of friction 'mu', no kernel loaded");
+    skipped.push_back("friction: no ground has a coefficient of friction 'mu', no kernel loaded");
   return out;
 }
 

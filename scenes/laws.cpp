@@ -47,9 +47,8 @@ bool is_rest_position(const Energy& energy, const Symbol& rest) {
 }  // namespace
 
 const Energy& Laws::get(const std::string& law, const Place& place) {
-  const std::string file = catalogue_->file_of(law, scene_folder_, place);
-  auto found = read_.find(file);
-  if (found == read_.end()) found = read_.emplace(file, read_energy(file)).first;
+  auto found = read_.find(law);
+  if (found == read_.end()) found = read_.emplace(law, catalogue_->read_complete(law, scene_folder_, place)).first;
   return found->second;
 }
 

@@ -23,7 +23,7 @@ class Laws {
  private:
   const Catalogue* catalogue_;
   std::string scene_folder_;
-  std::map<std::string, Energy> read_;  // by file
+  std::map<std::string, Energy> read_;  // by the name or path that was written
 };
 
 // The values of all params of the energy in SI. Throws SourceError at the scene's line for a param that is missing,

@@ -30,7 +30,7 @@ class Analysis {
 
  private:
   void points() const {
-    if (energy_.kind == Energy::Kind::density) return;
+    if (energy_.geometry.empty() || energy_.kind == Energy::Kind::density) return;
     const size_t expected = static_cast<size_t>(points_of_stencil(energy_.geometry));
     const auto dofs = energy_.with_role(Role::dof);
     for (const Symbol* dof : dofs)
@@ -53,10 +53,14 @@ class Analysis {
     if (name == "pi") throw SourceError(place, "'pi' is the number 3.14159...; choose another name");
     const auto [known, fresh] = declared_.emplace(name, place);
     if (fresh) return;
-    const bool header = energy_.kind == Energy::Kind::density && name == "F";
-    throw SourceError(
-        place, header ? "'F' is declared by the header of a density; choose another name"
-                      : fmt::format("'{}' is declared twice; the first time in line {}", name, known->second.line));
+    if (energy_.kind == Energy::Kind::density && name == "F")
+      throw SourceError(place, "'F' is declared by the header of a density; choose another name");
+    if (energy_.kind == Energy::Kind::barrier && (name == "gap" || name == "gap2"))
+      throw SourceError(place, fmt::format("'{}' is declared by the header of a barrier; choose another name", name));
+    const Place& first = known->second;
+    const std::string where =
+        first.file == place.file ? fmt::format("in line {}", first.line) : "at " + to_string(first);
+    throw SourceError(place, fmt::format("'{}' is declared twice; the first time {}", name, where));
   }
 
   void declarations() {
@@ -101,14 +105,35 @@ class Analysis {
     }
     for (const Condition& condition : energy_.active) check(condition, known);
     for (const Condition& condition : energy_.require) check(condition, known);
+    if (energy_.kind == Energy::Kind::distance) return gap_of_a_distance(known);
     const Quantity value = typed(*energy_.value, known);
     const Place place = start_of(*energy_.value);
     if (!value.shape.scalar())
       throw SourceError(place, fmt::format("the value of an energy is a scalar, found {}", to_string(value.shape)));
     if (!value.any_unit && value.unit != value_unit(energy_))
-      throw SourceError(place, fmt::format("the value of a {} {} expects {}, found {}", energy_.geometry,
-                                           energy_.kind == Energy::Kind::density ? "density" : "energy", value_text(),
-                                           to_string(value.unit)));
+      throw SourceError(
+          place, fmt::format("the value of a {} expects {}, found {}", what(), value_text(), to_string(value.unit)));
+  }
+
+  // A distance gives `gap2`, `gap` or both, and may give a `weight` of the energy.
+  void gap_of_a_distance(const Quantities& known) {
+    const Let* gap = nullptr;
+    for (const Let& let : energy_.lets) {
+      const bool is_gap = let.name == "gap" || let.name == "gap2";
+      if (!is_gap && let.name != "weight") continue;
+      used_.insert(let.name);
+      if (is_gap) gap = &let;
+      const Quantity& q = known.at(let.name);
+      const Unit expected = pow(parse_unit("m").unit, {let.name == "gap" ? 1 : let.name == "gap2" ? 2 : 0, 1});
+      if (!q.shape.scalar() || (!q.any_unit && q.unit != expected))
+        throw SourceError(let.place, fmt::format("'{}' of a distance expects a scalar in {}, found a {} in {}",
+                                                 let.name, to_string(expected), to_string(q.shape), to_string(q.unit)));
+    }
+    if (gap == nullptr)
+      throw SourceError({energy_.file, 0, 0},
+                        fmt::format("'{}' gives no gap; expected `let gap2 = EXPRESSION` (m^2) or "
+                                    "`let gap = EXPRESSION` (m)",
+                                    energy_.name));
   }
 
   Quantity typed(const Expression& e, const Quantities& known) {
@@ -169,6 +194,11 @@ class Analysis {
       throw SourceError(condition.place, "a condition needs the same unit on both sides: " + conflict);
   }
 
+  std::string what() const {
+    if (energy_.kind == Energy::Kind::barrier) return "barrier";
+    return energy_.geometry + (energy_.kind == Energy::Kind::density ? " density" : " energy");
+  }
+
   const char* value_text() const {
     if (energy_.geometry == "solid") return "an energy per volume (J/m^3)";
     if (energy_.geometry == "membrane") return "an energy per area (J/m^2)";
@@ -176,7 +206,12 @@ class Analysis {
     return "an energy (J)";
   }
 
-  void unused() const {
+  void unused() {
+    if (energy_.kind == Energy::Kind::barrier) {
+      if (!used_.contains("gap") && !used_.contains("gap2"))
+        throw SourceError(energy_.symbols[0].place, "a barrier is a function of 'gap' or 'gap2'; neither is used");
+      used_.insert({"gap", "gap2"});
+    }
     for (const Symbol& symbol : energy_.symbols)
       if (!used_.contains(symbol.name))
         throw SourceError(symbol.place, fmt::format("the {} '{}' is not used", to_string(symbol.role), symbol.name));
@@ -196,7 +231,7 @@ class Analysis {
 
 Unit value_unit(const Energy& energy) {
   static const Unit joule = parse_unit("J").unit, metre = parse_unit("m").unit;
-  if (energy.kind == Energy::Kind::stencil) return joule;
+  if (energy.kind != Energy::Kind::density) return joule;
   const int dimension = energy.geometry == "solid" ? 3 : energy.geometry == "membrane" ? 2 : 1;
   return joule / pow(metre, {dimension, 1});
 }

@@ -58,22 +58,27 @@ struct Condition {
 };
 
 struct Energy {
-  enum class Kind { density, stencil };
+  // The last two are parts that are composed to stencil energies (symbolic/compose.h): a law over a gap, without
+  // points; a distance that gives the gap, without a value.
+  enum class Kind { density, stencil, barrier, distance };
   Kind kind = Kind::density;
   std::string name;
-  std::string geometry;  // density: "solid" (F 3x3), "membrane" (3x2), "line" (3x1); stencil: "point", "hinge" ...
+  std::string geometry;  // density: "solid" (F 3x3), "membrane" (3x2), "line" (3x1); barrier: ""; else "point" ...
   std::string summary;   // the comment lines above the header
   std::string cite;
-  std::vector<Symbol> symbols;  // in order of declaration; a density's "F" (Role::dof) comes first
-  std::vector<Let> lets;        // in order; a case's lets stand where they were written
+  // In order of declaration; those that the header declares come first, as dofs: "F" of a density, "gap" and "gap2" of
+  // a barrier.
+  std::vector<Symbol> symbols;
+  std::vector<Let> lets;  // in order; a case's lets stand where they were written
   std::vector<std::string> cases;
   std::vector<Condition> active;  // whoever builds the list of stencils keeps those where all hold
   std::vector<Condition> require;
-  ExpressionPtr value;
+  ExpressionPtr value;       // null in a distance
   bool fixed_frame = false;  // `frame fixed`: the author states that it is not invariant under rotation
   std::string text;          // the file as read
   std::string file;
 
+  bool complete() const { return kind == Kind::density || kind == Kind::stencil; }
   const Symbol* find(std::string_view symbol_name) const;
   std::vector<const Symbol*> with_role(Role role) const;
 };
@@ -86,7 +91,7 @@ int points_of_stencil(std::string_view stencil);
 // Shape of F in a density of that geometry; nothing when there is none of that name.
 std::optional<Shape> shape_of_F(std::string_view geometry);
 
-// Reads and analyses (names, shapes, units, ranges) one energy. Throws SourceError at the exact place.
+// Reads and analyses (names, shapes, units, ranges) one energy, or one part. Throws SourceError at the exact place.
 Energy parse_energy(std::string_view text, const std::string& file);
 Energy read_energy(const std::string& file);
 

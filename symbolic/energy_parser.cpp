@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 
 #include "symbolic/analyse.h"
@@ -12,8 +13,11 @@
 namespace ergon {
 namespace {
 
-const std::vector<std::string> keywords = {"density", "energy", "cite",    "param", "lag",   "rest", "dof",
-                                           "let",     "active", "require", "frame", "value", "case"};
+const std::vector<std::string> headers = {"density", "energy", "barrier", "distance"};
+const std::vector<std::string> keywords = {"density", "energy", "barrier", "distance", "cite",  "param", "lag", "rest",
+                                           "dof",     "let",    "active",  "require",  "frame", "value", "case"};
+constexpr const char* any_header =
+    "`density NAME GEOMETRY`, `energy NAME STENCIL`, `barrier NAME` or `distance NAME STENCIL`";
 
 std::string list(const std::vector<std::string>& names) { return fmt::format("{}", fmt::join(names, ", ")); }
 
@@ -25,13 +29,13 @@ class EnergyParser {
     Statements statements = split_statements(text, file);
     energy_.summary = std::move(statements.summary);
     if (statements.all.empty())
-      throw SourceError({file, 0, 0}, "expected `density NAME GEOMETRY` or `energy NAME STENCIL`, found an empty file");
+      throw SourceError({file, 0, 0}, fmt::format("expected {}, found an empty file", any_header));
     header(statements.all.front());
     for (size_t i = 1; i < statements.all.size(); ++i) read(statements.all[i]);
   }
 
   Energy finish() {
-    if (!energy_.value)
+    if (!energy_.value && energy_.kind != Energy::Kind::distance)
       throw SourceError(header_,
                         fmt::format("'{}' has no value; expected a statement `value EXPRESSION`", energy_.name));
     analyse(energy_);
@@ -60,23 +64,34 @@ class EnergyParser {
   void header(const Statement& statement) {
     const Words words = split(statement);
     header_ = words.places[0];
-    const bool density = words.text[0] == "density";
-    if (!density && words.text[0] != "energy")
-      throw SourceError(words.places[0], fmt::format("expected `density NAME GEOMETRY` or `energy NAME STENCIL` as the "
-                                                     "first statement, found '{}'",
-                                                     words.text[0]) +
-                                             did_you_mean(words.text[0], {"density", "energy"}));
-    const char* third = density ? "GEOMETRY" : "STENCIL";
-    if (words.text.size() != 3)
-      throw SourceError(words.places[std::min<size_t>(words.text.size(), 3)],
-                        fmt::format("expected `{} NAME {}`, found {}", words.text[0], third,
-                                    words.text.size() < 3 ? "the end of the statement" : "'" + words.text[3] + "'"));
-    energy_.kind = density ? Energy::Kind::density : Energy::Kind::stencil;
+    const auto found = std::find(headers.begin(), headers.end(), words.text[0]);
+    if (found == headers.end())
+      throw SourceError(words.places[0],
+                        fmt::format("expected {} as the first statement, found '{}'", any_header, words.text[0]) +
+                            did_you_mean(words.text[0], headers));
+    constexpr std::array kinds = {Energy::Kind::density, Energy::Kind::stencil, Energy::Kind::barrier,
+                                  Energy::Kind::distance};
+    energy_.kind = kinds[static_cast<size_t>(found - headers.begin())];
+    const bool barrier = energy_.kind == Energy::Kind::barrier;
+    const bool density = energy_.kind == Energy::Kind::density;
+    const char* third = barrier ? "" : density ? " GEOMETRY" : " STENCIL";
+    const size_t count = barrier ? 2 : 3;
+    if (words.text.size() != count)
+      throw SourceError(
+          words.places[std::min<size_t>(words.text.size(), count)],
+          fmt::format("expected `{} NAME{}`, found {}", words.text[0], third,
+                      words.text.size() < count ? "the end of the statement" : "'" + words.text[count] + "'"));
     energy_.name = words.text[1];
-    energy_.geometry = words.text[2];
     if (end_of_name(energy_.name, 0) != energy_.name.size())
       throw SourceError(words.places[1],
                         fmt::format("expected a name of letters, digits and '_', found '{}'", energy_.name));
+    if (barrier) {
+      const Unit metre = parse_unit("m").unit;
+      energy_.symbols.push_back({"gap", Role::dof, {}, metre, {}, "distance beyond the offset", words.places[0]});
+      energy_.symbols.push_back({"gap2", Role::dof, {}, pow(metre, {2, 1}), {}, "square of the gap", words.places[0]});
+      return;
+    }
+    energy_.geometry = words.text[2];
     density ? density_geometry(words.places[2]) : stencil_geometry(words.places[2]);
   }
 
@@ -101,7 +116,7 @@ class EnergyParser {
     const size_t end = end_of_name(statement.text, 0);
     const std::string word = statement.text.substr(0, end);
     const Place place = statement.place();
-    if (word == "density" || word == "energy")
+    if (std::find(headers.begin(), headers.end(), word) != headers.end())
       throw SourceError(place, fmt::format("a second header; a file holds one energy, and '{}' began in line {}",
                                            energy_.name, header_.line));
     if (word == "cite") return cite(statement, end);
@@ -137,6 +152,10 @@ class EnergyParser {
   }
 
   void declare(const Statement& statement, size_t end, Role role) {
+    if (role == Role::dof && energy_.kind == Energy::Kind::barrier)
+      throw SourceError(statement.place(),
+                        "a barrier is written over gap and gap2 alone, which are declared by its header; points belong "
+                        "to a distance");
     if (role == Role::dof && energy_.kind == Energy::Kind::density)
       throw SourceError(statement.place(),
                         "a density is written over F alone, which is declared by its header; "
@@ -163,6 +182,8 @@ class EnergyParser {
   }
 
   void case_let(ExpressionParser& parser) {
+    if (energy_.kind == Energy::Kind::barrier)
+      throw SourceError(parser.next().place, "a barrier is one function of the gap; cases belong to a distance");
     const Token case_name = parser.take_name("the name of the case, as in `case face gap2 = ...`");
     const Token name = parser.take_name("a name to give, as in `case face gap2 = ...`");
     auto& cases = energy_.cases;
@@ -180,6 +201,8 @@ class EnergyParser {
   void condition(ExpressionParser& parser, const std::string& keyword, const Place& place) {
     if (keyword == "active" && energy_.kind == Energy::Kind::density)
       throw SourceError(place, "a density is active in every element; `active` belongs to stencil energies");
+    if (keyword == "active" && energy_.kind == Energy::Kind::distance)
+      throw SourceError(place, "a distance acts nowhere by itself; `active` belongs to the barrier over it");
     ExpressionPtr left = parser.expression();
     if (!parser.next().is("<") && !parser.next().is(">"))
       throw SourceError(parser.next().place,
@@ -192,6 +215,8 @@ class EnergyParser {
   }
 
   void value(ExpressionParser& parser, const Place& place) {
+    if (energy_.kind == Energy::Kind::distance)
+      throw SourceError(place, "a distance has no value; it gives its gap by `let gap2 = ...` or `let gap = ...`");
     if (energy_.value)
       throw SourceError(place,
                         fmt::format("a second value; '{}' has one already in line {}", energy_.name, value_.line));

@@ -101,7 +101,7 @@ std::string formula_text(const Energy& energy) {
   for (const Condition& c : energy.active) text += fmt::format("active {} < {}\n", to_text(*c.left), to_text(*c.right));
   for (const Condition& c : energy.require)
     text += fmt::format("require {} < {}\n", to_text(*c.left), to_text(*c.right));
-  return text + "value " + to_text(*energy.value) + "\n";
+  return energy.value ? text + "value " + to_text(*energy.value) + "\n" : text;
 }
 
 std::string symbol_table(const Energy& energy) {

@@ -142,8 +142,12 @@ std::string formula_latex(const Energy& energy) {
     text += to_latex(*c.left) + " &< " + to_latex(*c.right) + " && \\text{(active)} \\\\\n";
   for (const Condition& c : energy.require)
     text += to_latex(*c.left) + " &< " + to_latex(*c.right) + " && \\text{(required)} \\\\\n";
-  text += (energy.kind == Energy::Kind::density ? "\\Psi" : "E") + std::string(" &= ") + to_latex(*energy.value);
-  return text + "\n\\end{align*}\n";
+  if (energy.value)
+    text +=
+        (energy.kind == Energy::Kind::density ? "\\Psi" : "E") + std::string(" &= ") + to_latex(*energy.value) + "\n";
+  else
+    text.erase(text.rfind(" \\\\"), 3);
+  return text + "\\end{align*}\n";
 }
 
 }  // namespace ergon

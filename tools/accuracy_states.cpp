@@ -63,7 +63,7 @@ std::vector<double> anchor(const Energy& energy, AccuracyState& state, std::mt19
   const std::vector<const Symbol*> dofs = energy.with_role(Role::dof);
   std::vector<double> X(3 * dofs.size());
   for (double& x : X) x = uniform(random, -1, 1);
-  bring_together(energy.geometry, X, random);
+  if (energy.find("offset") == nullptr) bring_together(energy.geometry, X, random);
   for (size_t i = 0; i < dofs.size(); ++i) {
     const Symbol* rest = rest_position(energy, *dofs[i]);
     if (rest == nullptr) rest = lagged_position(energy, *dofs[i]);
@@ -71,6 +71,15 @@ std::vector<double> anchor(const Energy& energy, AccuracyState& state, std::mt19
     if (rest != nullptr) state.inputs[rest->name].assign(first, first + 3);
   }
   return X;
+}
+
+// Makes the offset of a composed energy (symbolic/compose.h) the distance at X: its first condition is that of the gap.
+void touch(const Energy& energy, const std::string& case_name, AccuracyState& state) {
+  state.inputs["offset"] = {0};
+  state.x = state.X;
+  const ReferenceValue at = evaluate_reference_at(energy, case_name, exact_inputs(energy, state, false, {}), digits);
+  state.inputs["offset"] = {std::max(at.require[0], 0.0)};
+  state.x.clear();
 }
 
 bool admissible(const Energy& energy, const std::string& case_name, const AccuracyState& state) {
@@ -89,6 +98,7 @@ std::optional<AccuracyState> accuracy_state(const Energy& energy, const std::str
     for (const Role role : {Role::param, Role::rest, Role::lag})
       state.inputs.merge(sample_values(energy, role, static_cast<int>(random() % 1000)));
     state.X = anchor(energy, state, random);
+    if (energy.find("offset") != nullptr) touch(energy, case_name, state);
     std::vector<double> direction(state.X.size());
     double size = 0;
     for (double& d : direction) d = uniform(random, -1, 1), size += d * d;

@@ -15,13 +15,28 @@
 namespace ergon {
 namespace {
 
-const char* kind_of(const Energy& energy) { return energy.kind == Energy::Kind::density ? "density" : "energy"; }
+std::string title_of(const Energy& energy) {
+  constexpr std::array kinds = {"density", "energy", "barrier", "distance"};
+  return fmt::format("{} {}{}{}", kinds[static_cast<size_t>(energy.kind)], energy.name,
+                     energy.geometry.empty() ? "" : ", ", energy.geometry);
+}
+
+// Of a part, what is found in the energies that it is composed to, under their names.
+std::vector<Finding> findings_of(const Energy& energy) {
+  std::vector<Finding> all;
+  for (const Energy& whole : complete(energy))
+    for (Finding& finding : check_energy(whole)) {
+      if (!energy.complete()) finding.message = whole.name + ": " + finding.message;
+      all.push_back(std::move(finding));
+    }
+  return all;
+}
 
 std::string plural(int count, const char* what) { return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s"); }
 
 int check(const std::string& name, bool json, std::ostream& out) {
-  const Energy energy = find_energy(name);
-  const std::vector<Finding> findings = check_energy(energy);
+  const Energy energy = find_energy_or_part(name);
+  const std::vector<Finding> findings = findings_of(energy);
   std::array<int, 4> counts{};
   size_t width = 0;
   for (const Finding& finding : findings) {
@@ -40,7 +55,7 @@ int check(const std::string& name, bool json, std::ostream& out) {
                 {"state", f.state}});
     return code;
   }
-  out << fmt::format("{}: {} {}, {}\n", energy.file, kind_of(energy), energy.name, energy.geometry);
+  out << fmt::format("{}: {}\n", energy.file, title_of(energy));
   for (const Finding& f : findings) {
     const std::string place = f.place.line > 0 ? to_string(f.place) + ": " : "";
     out << fmt::format("  {:<7}  {:<{}}  {}{}\n", to_string(f.severity), f.check, width, place, f.message);

@@ -54,8 +54,15 @@ void show_kernel(const Energy& energy, const std::string& case_name, std::ostrea
                      case_name.empty() ? "" : " --case " + case_name, kernel_functions);
 }
 
+std::string title_of(const Energy& energy) {
+  if (energy.kind == Energy::Kind::barrier) return energy.name + ": barrier over a gap, in J";
+  if (energy.kind == Energy::Kind::distance) return energy.name + ": distance of a " + energy.geometry;
+  return fmt::format("{}: {} of a {}, in {}", energy.name, energy.kind == Energy::Kind::density ? "density" : "energy",
+                     energy.geometry, to_string(value_unit(energy)));
+}
+
 int show(const Options& options, std::ostream& out) {
-  const Energy energy = find_energy(options.energy);
+  const Energy energy = options.source ? find_energy(options.energy) : find_energy_or_part(options.energy);
   const std::vector<std::string> cases = cases_of(energy, options.case_name);
   if (options.source) {
     for (const std::string& name : cases) out << generate(energy, compile_options(name, lanes::best_lanes())).source;
@@ -65,13 +72,12 @@ int show(const Options& options, std::ostream& out) {
     out << formula_latex(energy);
     return exit_done;
   }
-  const bool density = energy.kind == Energy::Kind::density;
-  out << fmt::format("{}: {} of a {}, in {}\n", energy.name, density ? "density" : "energy", energy.geometry,
-                     to_string(value_unit(energy)));
+  out << title_of(energy) << '\n';
   if (!energy.summary.empty()) out << energy.summary << '\n';
   if (!energy.cite.empty()) out << energy.cite << '\n';
   out << '\n' << symbol_table(energy) << '\n' << formula_text(energy) << '\n';
-  for (const std::string& name : cases) show_kernel(energy, name, out);
+  if (energy.complete())
+    for (const std::string& name : cases) show_kernel(energy, name, out);
   return exit_done;
 }
 

@@ -5,16 +5,34 @@
 #include "codegen/compile_all.h"
 #include "runtime/error.h"
 #include "scenes/catalogue.h"
+#include "symbolic/compose.h"
 #include "tools/choices.h"
 
 namespace ergon {
 
-Energy find_energy(const std::string& name_or_path) {
+Energy find_energy_or_part(const std::string& name_or_path) {
   std::error_code error;
-  if (name_or_path.ends_with(".energy") || std::filesystem::is_regular_file(name_or_path, error)) {
+  if (name_or_path.ends_with(".energy") || std::filesystem::is_regular_file(name_or_path, error))
     return read_energy(name_or_path);
-  }
-  return read_energy(Catalogue(Catalogue::default_folders()).file_of(name_or_path, "", Place{name_or_path}));
+  return Catalogue(Catalogue::default_folders()).read(name_or_path, "", Place{name_or_path});
+}
+
+Energy find_energy(const std::string& name_or_path) {
+  Energy energy = find_energy_or_part(name_or_path);
+  if (energy.complete()) return energy;
+  return Catalogue(Catalogue::default_folders()).read_complete(name_or_path, "", Place{name_or_path});
+}
+
+std::vector<Energy> complete(const Energy& energy) {
+  if (energy.complete()) return {energy};
+  const Catalogue catalogue(Catalogue::default_folders());
+  std::vector<Energy> out;
+  if (energy.kind == Energy::Kind::barrier)
+    for (const std::string& distance : catalogue.distances())
+      out.push_back(compose(energy, catalogue.read(distance, "", {}), Offset::none));
+  else
+    out.push_back(compose(catalogue.read("log_barrier", "", {}), energy, Offset::none));
+  return out;
 }
 
 std::vector<std::string> catalogue_names() { return Catalogue(Catalogue::default_folders()).names(); }

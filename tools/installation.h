@@ -11,10 +11,16 @@
 
 namespace ergon {
 
-// An energy by its name in the catalogue or by the path of its file. Throws SourceError, with the nearest name.
+// An energy by its name in the catalogue or by the path of its file; a barrier with its distance, as
+// "log_barrier:point_edge". Throws SourceError, with the nearest name.
 Energy find_energy(const std::string& name_or_path);
+// The same, or a barrier or distance alone.
+Energy find_energy_or_part(const std::string& name_or_path);
 
-// The names of the catalogue, sorted.
+// The energies that tell of an energy or part: itself; a barrier over all distances; the log barrier over a distance.
+std::vector<Energy> complete(const Energy& energy);
+
+// The names of the catalogue's complete energies, sorted.
 std::vector<std::string> catalogue_names();
 
 // The energy's cases, or "" alone when it has none; only the one `asked` for, unless that is "". Throws InputError when

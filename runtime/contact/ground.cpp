@@ -70,9 +70,9 @@ GroundContact::GroundContact(System& system, std::vector<Ground> grounds, const 
                                {{"n", n}, {"height", {side.ground.height}}, {"dhat", {side.ground.dhat}}}, {}));
     if (side.ground.friction > 0) {
       if (!laws.friction.table) throw std::logic_error("GroundContact: friction without its law");
-      side.friction = system.add(
-          Potential::on_stencils("ground_friction" + number, laws.friction, {}, X,
-                                 {{"n", n}, {"mu", {side.ground.friction}}, {"epsv", {side.ground.epsv}}}, {}));
+      side.friction =
+          system.add(Potential::on_stencils("ground_friction" + number, laws.friction, {}, X,
+                                            {{"epsv", {side.ground.epsv}}, {"fall", {side.ground.epsv}}}, {}));
     }
     sides_.push_back(std::move(side));
   }
@@ -240,6 +240,9 @@ double GroundContact::lag_friction(const Eigen::Matrix3Xd& x, const Eigen::Matri
     if (found_ != side.rubbing) friction.set_stencils(found_, X_, {});
     side.rubbing = found_;
     if (side.rubbing.empty()) continue;
+    friction.set_lag("n", components(side.ground.normal));
+    friction.set_lag("mu_static", {side.ground.friction});
+    friction.set_lag("mu_kinetic", {side.ground.friction});
     friction.set_lag("force", side.friction_force);
     friction.set_lag("xlag", start);
     friction.set_lag("dt", {dt});

@@ -22,8 +22,9 @@ struct Ground {
   double stiffness = 0;                               // N/m, of the barrier; 0: chosen from the scene's forces
 };
 
-// The laws, loaded by whoever builds the scene: params n, height, dhat and lag kappa; params n, mu, epsv and lags
-// force, dt, xlag. The friction kernel may be empty when no ground has friction.
+// The laws, loaded by whoever builds the scene: log_barrier:half_space, with params n, height, dhat and lag kappa;
+// friction, with params epsv, fall and lags n, mu_static, mu_kinetic, force, dt, xlag. The friction kernel may be empty
+// when no ground has friction.
 struct GroundLaws {
   Kernel barrier;
   Kernel friction;
@@ -101,7 +102,7 @@ class GroundContact : public Contact {
   std::vector<int> found_;
 };
 
-// b(gap)/kappa of ground_barrier.energy and its derivative, m^2 and m; zero at and beyond dhat.
+// b(gap)/kappa of log_barrier.energy and its derivative, m^2 and m; zero at and beyond dhat.
 double barrier_value(double gap, double dhat);
 double barrier_slope(double gap, double dhat);
 

@@ -3,29 +3,23 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 
 #include <fmt/format.h>
 
 #include "codegen/compile.h"
+#include "tests/symbolic/energy_files.h"
 
 namespace ergon {
 namespace {
 
 TEST(OperationCounts, ArePinned) {
-  std::vector<std::string> files;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(ERGON_SOURCE_DIR "/energies"))
-    if (entry.path().extension() == ".energy") files.push_back(entry.path().string());
-  std::sort(files.begin(), files.end());
   std::string counted =
       "# energy case: value gradient hessian principal projected (divisions roots calls) kept per material, per "
       "element\n";
-  for (const std::string& file : files) {
-    Energy energy = read_energy(file);
+  for (const Energy& energy : test::catalogue()) {
     std::vector<std::string> cases = energy.cases.empty() ? std::vector<std::string>{""} : energy.cases;
     for (const std::string& c : cases) {
       OperationCounts n = generate(energy, {.case_name = c}).counts;

@@ -6,12 +6,12 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <filesystem>
 
 #include "runtime/aligned.h"
 #include "runtime/lanes/projection_table.h"
 #include "tests/codegen/evaluate_kernel.h"
 #include "tests/codegen/states.h"
+#include "tests/symbolic/energy_files.h"
 
 namespace ergon::testing {
 namespace {
@@ -31,13 +31,10 @@ Energy flat(const std::string& geometry, const std::string& unit, const std::str
 // All densities of the catalogue that have a closed form, and flat ones of different structure.
 std::vector<IsotropicCase> isotropic_densities() {
   std::vector<IsotropicCase> out;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(ERGON_SOURCE_DIR "/energies")) {
-    if (entry.path().extension() != ".energy") continue;
-    Energy energy = read_energy(entry.path());
+  for (const Energy& energy : test::catalogue()) {
     if (energy.kind != Energy::Kind::density || !energy.cases.empty()) continue;
     if (!generate(energy, {}).module.principal.empty()) out.push_back({energy.name, energy});
   }
-  std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
   out.push_back({"membrane_st_venant", flat("membrane", "N/m", "k*norm2(F'*F - identity(2))")});
   out.push_back({"membrane_neo_hookean", flat("membrane", "N/m", "k*(tr(F'*F) - 3 + 1/det(F'*F))")});
   out.push_back({"membrane_area", flat("membrane", "N/m", "k*sqrt(det(F'*F))")});

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "tests/symbolic/energy_files.h"
+
 namespace ergon::testing {
 namespace {
 
@@ -20,7 +22,7 @@ double cross2(const Inputs& in) {
 
 // The tests of every energy would say nothing of the mollifier of parallel edges if no state reached it.
 TEST(States, SomeEdgesAreNearlyParallelAndOthersAreNot) {
-  const Energy energy = read_energy(ERGON_SOURCE_DIR "/energies/contact/edge_edge_barrier.energy");
+  const Energy& energy = test::shipped("squared_log_barrier:edge_edge");
   for (const std::string& case_name : energy.cases) {
     int faded = 0, whole = 0;
     for (const State& state : draw_states(energy, case_name, 7)) {

@@ -9,10 +9,10 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "tests/codegen/evaluate_kernel.h"
 #include "tests/codegen/states.h"
+#include "tests/symbolic/energy_files.h"
 
 namespace ergon::testing {
 namespace {
@@ -62,24 +62,16 @@ Found hold_against_eigenvalues(const Energy& energy, const std::string& case_nam
   return found;
 }
 
-std::vector<std::string> files() {
-  std::vector<std::string> out;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(ERGON_SOURCE_DIR "/energies"))
-    if (entry.path().extension() == ".energy") out.push_back(entry.path().string());
-  std::sort(out.begin(), out.end());
-  return out;
-}
-
 class StructureOf : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(StructureOf, AgreesWithEigenvalues) {
-  const Energy energy = read_energy(GetParam());
+  const Energy& energy = test::shipped(GetParam());
   for (const std::string& c : energy.cases.empty() ? std::vector<std::string>{""} : energy.cases)
     hold_against_eigenvalues(energy, c);
 }
 
-INSTANTIATE_TEST_SUITE_P(Catalogue, StructureOf, ::testing::ValuesIn(files()),
-                         [](const auto& info) { return std::filesystem::path(info.param).stem().string(); });
+INSTANTIATE_TEST_SUITE_P(Catalogue, StructureOf, ::testing::ValuesIn(test::catalogue_names()),
+                         [](const auto& info) { return test::name_of_test(info.param); });
 
 Found found_in(const std::string& header, const std::string& value) {
   const Energy energy = parse_energy(header + "value " + value + "\n", "made_up.energy");

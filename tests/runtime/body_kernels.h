@@ -168,7 +168,7 @@ inline Kernel ground_barrier() {
     ErgonKernel k{};
     fill<ground_barrier_law, 1, 5>(k);
     set_point(k);
-    k.energy = "ground_barrier";
+    k.energy = "log_barrier:half_space";
     k.n_inputs = 4;
     k.inputs = inputs;
     k.requires_ = k.actives = 1;
@@ -179,8 +179,8 @@ inline Kernel ground_barrier() {
 }
 
 inline Derivatives ground_friction_law(const Vector3d& x, const double* e, const double* u) {
-  const Vector3d n = vector(u);
-  const double mu = u[3], force = e[0], eps = u[4] * e[1];
+  const Vector3d n = vector(e + 5);
+  const double mu = e[8], force = e[0], eps = u[0] * e[1];
   const Matrix3d tangent = Matrix3d::Identity() - n * n.transpose();
   const Vector3d slip = tangent * (x - vector(e + 2));
   const double s = slip.norm() / eps, scale = mu * force;
@@ -197,15 +197,16 @@ inline Derivatives ground_friction_law(const Vector3d& x, const double* e, const
 }
 
 inline Kernel ground_friction() {
-  static const ErgonInput inputs[] = {{"n", ERGON_PARAM, 3, 1, 0},    {"mu", ERGON_PARAM, 1, 1, 3},
-                                      {"epsv", ERGON_PARAM, 1, 1, 4}, {"force", ERGON_LAG, 1, 1, 0},
-                                      {"dt", ERGON_LAG, 1, 1, 1},     {"xlag", ERGON_LAG, 3, 1, 2}};
+  static const ErgonInput inputs[] = {{"epsv", ERGON_PARAM, 1, 1, 0},    {"fall", ERGON_PARAM, 1, 1, 1},
+                                      {"force", ERGON_LAG, 1, 1, 0},     {"dt", ERGON_LAG, 1, 1, 1},
+                                      {"xlag", ERGON_LAG, 3, 1, 2},      {"n", ERGON_LAG, 3, 1, 5},
+                                      {"mu_static", ERGON_LAG, 1, 1, 8}, {"mu_kinetic", ERGON_LAG, 1, 1, 9}};
   static const ErgonKernel kernel = [] {
     ErgonKernel k{};
-    fill<ground_friction_law, 5, 5>(k);
+    fill<ground_friction_law, 10, 2>(k);
     set_point(k);
-    k.energy = "ground_friction";
-    k.n_inputs = 6;
+    k.energy = "friction";
+    k.n_inputs = 8;
     k.inputs = inputs;
     k.actives = 1;
     k.psd_hessian = 1;

@@ -38,15 +38,15 @@ TEST(builder, asks_only_for_the_kernels_that_are_used_and_says_what_is_left_out)
   EXPECT_THAT(kernels_of(time_part + block), ElementsAre("stable_neo_hookean", "inertia", "gravity"));
   EXPECT_THAT(kernels_of("gravity = [0, 0, 0]\n" + time_part + block), ElementsAre("stable_neo_hookean", "inertia"));
   EXPECT_THAT(kernels_of(time_part + block + "[[ground]]\n"),
-              ElementsAre("stable_neo_hookean", "inertia", "gravity", "ground_barrier"));
+              ElementsAre("stable_neo_hookean", "inertia", "gravity", "log_barrier:half_space"));
   EXPECT_THAT(kernels_of(time_part + block + "[[ground]]\n[[ground]]\nmu = 0.1\nheight = -1\n"),
-              ElementsAre("stable_neo_hookean", "inertia", "gravity", "ground_barrier", "ground_friction"));
+              ElementsAre("stable_neo_hookean", "inertia", "gravity", "log_barrier:half_space", "friction"));
 
   EXPECT_THAT(build_text("gravity = [0, 0, 0]\n" + time_part + block).skipped,
               ElementsAre("gravity: it is zero in this scene, no kernel loaded",
-                          "ground_barrier, ground_friction: there is no ground, no kernels loaded"));
+                          "log_barrier, friction: there is no ground, no kernels loaded"));
   EXPECT_THAT(build_text(time_part + block + "[[ground]]\n").skipped,
-              ElementsAre("ground_friction: no ground has a coefficient of friction 'mu', no kernel loaded"));
+              ElementsAre("friction: no ground has a coefficient of friction 'mu', no kernel loaded"));
 }
 
 TEST(builder, lays_out_masses_velocities_and_fixed_vertices) {

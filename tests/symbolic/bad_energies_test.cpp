@@ -46,7 +46,8 @@ TEST(BadEnergies, EmptyFilesAndFoldersAreNoEnergies) {
     return "accepted";
   };
   EXPECT_EQ(message("/dev/null"),
-            "/dev/null: expected `density NAME GEOMETRY` or `energy NAME STENCIL`, found an empty file");
+            "/dev/null: expected `density NAME GEOMETRY`, `energy NAME STENCIL`, `barrier NAME` or `distance NAME "
+            "STENCIL`, found an empty file");
   EXPECT_EQ(message("/"), "/: cannot read the energy file");
 }
 

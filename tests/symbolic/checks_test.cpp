@@ -33,16 +33,16 @@ Energy solid(const std::string& lines) {
 
 using Faults = std::vector<std::string>;
 
-class Catalogue : public testing::TestWithParam<std::filesystem::path> {};
+class Catalogue : public testing::TestWithParam<std::string> {};
 
 TEST_P(Catalogue, IsSound) {
-  const Energy energy = read_energy(GetParam());
+  const Energy energy = test::shipped(GetParam());
   EXPECT_EQ(faults(energy), Faults{});
   EXPECT_GE(check_energy(energy).size(), 2u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Files, Catalogue, testing::ValuesIn(test::energy_files("energies")),
-                         [](const auto& info) { return info.param.stem().string(); });
+INSTANTIATE_TEST_SUITE_P(Files, Catalogue, testing::ValuesIn(test::catalogue_names()),
+                         [](const auto& info) { return test::name_of_test(info.param); });
 
 TEST(Checks, SolidsAreCheckedExactly) {
   std::vector<std::string> all;

@@ -6,6 +6,7 @@
 #include "symbolic/elaborate.h"
 #include "symbolic/ginac_algebra.h"
 #include "symbolic/reference.h"
+#include "tests/symbolic/energy_files.h"
 
 namespace ergon {
 namespace {
@@ -49,7 +50,7 @@ TEST(Ginac, StencilsAgreeWithTheReference) {
       read_energy(ERGON_SOURCE_DIR "/energies/rods/spring.energy"),
       {{"x0", {0.1, 0.2, 0.3}}, {"x1", {1, 2, -1}}, {"X0", {0, 0, 0}}, {"X1", {1, 1, 1}}, {"k", {3}}});
   expect_same_as_reference(
-      read_energy(ERGON_SOURCE_DIR "/energies/contact/ground_barrier.energy"),
+      test::shipped("log_barrier:half_space"),
       {{"x", {0.1, 0.2, 0.3}}, {"n", {0, 0.6, 0.8}}, {"height", {0.1}}, {"dhat", {0.5}}, {"kappa", {2}}});
 }
 

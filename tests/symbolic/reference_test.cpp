@@ -150,7 +150,7 @@ TEST(Reference, MissingInputsAreNamed) {
 }
 
 // Central differences of the reference's own values and gradients, for every energy of the catalogue and a hinge.
-class Differences : public testing::TestWithParam<std::filesystem::path> {};
+class Differences : public testing::TestWithParam<std::string> {};
 
 void expect_differences_match(const Energy& energy, const std::string& case_name, const Inputs& inputs) {
   const ReferenceValue r = evaluate_reference(energy, case_name, inputs);
@@ -190,7 +190,7 @@ Inputs random_inputs(const Energy& energy, std::mt19937& engine) {
 }
 
 TEST_P(Differences, AgreeWithTheDerivatives) {
-  const Energy energy = read_energy(GetParam());
+  const Energy energy = test::shipped(GetParam());
   std::mt19937 engine(7);
   int tried = 0;
   for (int attempt = 0; attempt < 2000 && tried < 4; ++attempt) {
@@ -206,8 +206,8 @@ TEST_P(Differences, AgreeWithTheDerivatives) {
   EXPECT_EQ(tried, 4);
 }
 
-INSTANTIATE_TEST_SUITE_P(Catalogue, Differences, testing::ValuesIn(test::energy_files("energies")),
-                         [](const auto& info) { return info.param.stem().string(); });
+INSTANTIATE_TEST_SUITE_P(Catalogue, Differences, testing::ValuesIn(test::catalogue_names()),
+                         [](const auto& info) { return test::name_of_test(info.param); });
 
 TEST(Reference, HingeAngleDifferences) {
   const Energy hinge = parse_energy(

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "runtime/lanes/lanes.h"
+#include "tests/symbolic/energy_files.h"
 #include "tests/tools/command.h"
 #include "tools/accuracy.h"
 #include "tools/accuracy_states.h"
@@ -15,14 +16,6 @@
 namespace ergon {
 namespace {
 
-std::vector<std::string> all_names() {
-  std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(ERGON_SOURCE_DIR "/energies"))
-    if (entry.path().extension() == ".energy") names.push_back(entry.path().string());
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
 class EveryEnergyIsAccurate : public CommandTest, public testing::WithParamInterface<std::string> {};
 
 // Relative errors of value, gradient and Hessian, in units of 2^-53, over 1 + the condition of their state. A backward
@@ -30,7 +23,7 @@ class EveryEnergyIsAccurate : public CommandTest, public testing::WithParamInter
 constexpr double kBound = 16;
 
 TEST_P(EveryEnergyIsAccurate, WithinItsCondition) {
-  const Energy energy = read_energy(GetParam());
+  const Energy& energy = test::shipped(GetParam());
   for (const std::string& case_name : cases_of(energy)) {
     AccuracyOptions options;
     options.directions = 3;
@@ -50,8 +43,8 @@ TEST_P(EveryEnergyIsAccurate, WithinItsCondition) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Catalogue, EveryEnergyIsAccurate, testing::ValuesIn(all_names()),
-                         [](const auto& info) { return std::filesystem::path(info.param).stem().string(); });
+INSTANTIATE_TEST_SUITE_P(Catalogue, EveryEnergyIsAccurate, testing::ValuesIn(test::catalogue_names()),
+                         [](const auto& info) { return test::name_of_test(info.param); });
 
 class AccuracyCommand : public CommandTest {
  protected:

@@ -99,14 +99,15 @@ TEST_F(Eval, CountsWhatProjectionChanges) {
 }
 
 TEST_F(Eval, KeepsOnlyActiveStencils) {
-  const std::string barrier = "ground_barrier --mesh tet.msh --set n=0,0,1 --set kappa=3 ";
+  const std::string barrier = "log_barrier:half_space --mesh tet.msh --set n=0,0,1 --set kappa=3 ";
   // Three vertices at z = 0 are 0.25 above the plane, one at z = 1 is beyond dhat.
   const nlohmann::ordered_json result = json(barrier + "--set height=-0.25 --set dhat=0.5");
   EXPECT_EQ(result["elements"], 3);
   EXPECT_NEAR(result["value"], 3 * 3 * 0.0625 * std::log(2.0), 1e-14);
-  expect_error(barrier + "--set height=0.25 --set dhat=\"0.5 m\"",
-               "tet.msh: ground_barrier is not defined at these positions: a `require` condition does not hold, or its "
-               "value is not finite");
+  expect_error(
+      barrier + "--set height=0.25 --set dhat=\"0.5 m\"",
+      "tet.msh: log_barrier:half_space is not defined at these positions: a `require` condition does not hold, or its "
+      "value is not finite");
 }
 
 TEST_F(Eval, RestStateIsTheDefault) {
@@ -123,7 +124,7 @@ TEST_F(Eval, BadInputIsNamed) {
                "--set: stable_neo_hookean has no input 'Nu' (its inputs: E, nu); did you mean 'nu'?");
   expect_error("stable_neo_hookean" + tet + "--set E=1 --set E=2", "--set: 'E' is given twice");
   expect_error("stable_neo_hookean" + tet + "--set E", "--set: 'E' is not NAME=VALUE");
-  expect_error("ground_barrier" + tet + "--set n=0,1", "--set: 'n' is a vector of 3, found 2 numbers");
+  expect_error("log_barrier:half_space" + tet + "--set n=0,1", "--set: 'n' is a vector of 3, found 2 numbers");
   expect_error("spring" + tet + "--set k=1 --project clmp",
                "--project: 'clmp' is none of clamp, abs, none; did you mean 'clamp'?");
   write("short.txt", "0 0 0\n");

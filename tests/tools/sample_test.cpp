@@ -35,7 +35,7 @@ TEST(Sample, NoiseHasTheAmplitudeAskedForAndIsTheSameEveryTime) {
 }
 
 TEST(Sample, ValuesAreWithinTheirRanges) {
-  const Energy energy = read_energy(ERGON_SOURCE_DIR "/energies/contact/ground_friction.energy");
+  const Energy energy = read_energy(ERGON_SOURCE_DIR "/energies/contact/friction.energy");
   for (int attempt = 0; attempt < 20; ++attempt) {
     for (Role role : {Role::param, Role::lag}) {
       for (const auto& [name, values] : sample_values(energy, role, attempt)) {
@@ -43,7 +43,7 @@ TEST(Sample, ValuesAreWithinTheirRanges) {
       }
     }
   }
-  EXPECT_THAT(sample_values(energy, Role::param, 3).at("n"), testing::ElementsAre(0, 0, 1));
+  EXPECT_THAT(sample_values(energy, Role::lag, 3).at("n"), testing::ElementsAre(0, 0, 1));
 }
 
 }  // namespace
