@@ -17,6 +17,8 @@ namespace {
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
+constexpr size_t kSerial = 4096;  // pairs: fewer are not worth waking other threads
+
 enum Case : size_t { kPointPoint, kPointEdge, kPointTriangle, kEdgeEdge, kParallelPointEdge, kParallelPointPoint };
 
 template <size_t N>
@@ -216,7 +218,9 @@ void find_active(const CollisionSurface& surface, const Candidates& candidates, 
     for (auto& each : found) each.clear();
   }
   double smallest = std::numeric_limits<double>::infinity();
-#pragma omp parallel reduction(min : smallest)
+  const size_t all = candidates.point_triangle.size() + candidates.edge_edge.size() + candidates.point_edge.size() +
+                     candidates.point_point.size();
+#pragma omp parallel reduction(min : smallest) if (all > kSerial)
   {
     const auto thread = static_cast<size_t>(omp_get_thread_num()), threads = static_cast<size_t>(omp_get_num_threads());
     Finder finder(surface, x, X, dhat, active.found[thread]);

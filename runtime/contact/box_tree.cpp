@@ -12,7 +12,8 @@ using lanes::BoxLeaf;
 using lanes::kLeaf;
 
 constexpr int kHighest = std::numeric_limits<int>::max(), kLowest = std::numeric_limits<int>::min();
-constexpr double kDecayed = 1.5;  // growth of leaves against their primitives at which a tree is built anew
+constexpr std::ptrdiff_t kSerial = 256;  // leaves: fewer are not worth waking other threads
+constexpr double kDecayed = 1.5;         // growth of leaves against their primitives at which a tree is built anew
 
 template <class Box>
 void include(Box& box, const std::array<int, 3>& lower, const std::array<int, 3>& upper) {
@@ -138,7 +139,7 @@ void BoxTree::split(Item* first, Item* last) {
 
 double BoxTree::refit(const std::vector<IntegerBox>& boxes) {
   const auto leaves = static_cast<std::ptrdiff_t>(leaves_.size());
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (leaves > kSerial)
   for (std::ptrdiff_t n = 0; n < leaves; ++n) {
     BoxLeaf& leaf = leaves_[static_cast<size_t>(n)];
     IntegerBox all = kEmpty;

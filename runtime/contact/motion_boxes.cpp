@@ -16,6 +16,7 @@ using Eigen::Vector3d;
 
 namespace {
 
+constexpr std::ptrdiff_t kSerial = 8192;  // fewer are not worth waking other threads
 constexpr double kUnits = 1 << 29;  // along the longest side of all: a box and a shift add up to less than an int holds
 constexpr double kSpare = 0.25;     // of a point's motion, beyond its slack
 constexpr double kDrift = 0.25;     // of the slack: mean motions below it are left to the boxes
@@ -50,7 +51,7 @@ double MotionBoxes::excess(const Matrix3Xd& x0, const Matrix3Xd& x1, double reac
   const double from = still_ ? 0 : fraction(x0), to = still_ ? 0 : &x1 == &x0 ? from : fraction(x1);
   const auto count = static_cast<std::ptrdiff_t>(held_.size());
   double most = -infinity;
-#pragma omp parallel for schedule(static) reduction(max : most)
+#pragma omp parallel for schedule(static) if (count > kSerial) reduction(max : most)
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     const int v = surface_->points[static_cast<size_t>(i)];
     const Box& box = held_[static_cast<size_t>(i)];
@@ -115,7 +116,7 @@ void MotionBoxes::make(const Matrix3Xd& x0, const Matrix3Xd& x1, double excess, 
   }
   const double side = count > 0 ? (highest - lowest).maxCoeff() : 0;
   units_ = side > 0 ? kUnits / side : 0;
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (count > kSerial)
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     const Box& box = held_[static_cast<size_t>(i)];
     IntegerBox& units = boxes_[static_cast<size_t>(i)];

@@ -9,14 +9,15 @@ namespace ergon {
 
 namespace {
 
-constexpr double kRounding = 1 + 1e-9;  // distances are rounded by less than 2^-35 of them
+constexpr std::ptrdiff_t kSerial = 8192;  // fewer are not worth waking other threads
+constexpr double kRounding = 1 + 1e-9;    // distances are rounded by less than 2^-35 of them
 
 template <size_t N>
 void largest_of_corners(const std::vector<std::array<int, N>>& primitives, const MotionBoxes& motion,
                         std::vector<double>& largest) {
   largest.resize(primitives.size());
   const auto count = static_cast<std::ptrdiff_t>(primitives.size());
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (count > kSerial)
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     double most = 0;
     for (const int v : primitives[static_cast<size_t>(i)]) {

@@ -8,6 +8,12 @@
 
 namespace ergon {
 
+namespace {
+
+constexpr size_t kSerial = 256;  // pairs of leaves: fewer are not worth waking other threads
+
+}  // namespace
+
 void PairList::clear() {
   leaves_.clear();
   segments_.clear();
@@ -58,7 +64,7 @@ void PairList::write(std::vector<std::array<int, 2>>& out) {
   found_.resize(std::max(found_.size(), static_cast<size_t>(omp_get_max_threads())));
   for (Found& each : found_) each.count = 0;
   if (count > 0) {
-#pragma omp parallel
+#pragma omp parallel if (count > kSerial)
     {
       const auto thread = static_cast<size_t>(omp_get_thread_num()),
                  threads = static_cast<size_t>(omp_get_num_threads());

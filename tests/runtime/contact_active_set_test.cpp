@@ -1,11 +1,14 @@
 #include "runtime/contact/active_set.h"
 
 #include <gtest/gtest.h>
+#include <omp.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
 #include <map>
+#include <set>
 
+#include "runtime/mesh/mesh_build.h"
 #include "tests/runtime/contact_oracle.h"
 #include "tests/runtime/contact_soup.h"
 #include "tests/runtime/count_allocations.h"
@@ -159,6 +162,168 @@ TEST(ActiveSet, LeavesOutWhatRestsAndWhatMayNotMeet) {
   Soup soup = make_soup({.resting = 0.7});
   soup.surface.meet[0][1] = soup.surface.meet[1][0] = 0;
   expect_active(soup, 0.1);
+}
+
+TEST(ActiveSet, DoesNotDependOnOtherCandidates) {
+  const Soup soup = make_soup({.noise = 0.05});
+  const ActiveSet few = active_at(soup.surface, soup.x, soup.x, 0.08);
+  BroadPhase broad(soup.surface);
+  broad.cover(soup.x, noise(soup.x, 0.5, 1), 0.3);
+  ActiveSet many;
+  find_active(soup.surface, broad.candidates(), soup.x, soup.x, 0.08, many);
+  for (size_t k = 0; k < kCases; ++k) {
+    EXPECT_EQ(lists_of(few)[k]->vertices, lists_of(many)[k]->vertices);
+    EXPECT_EQ(lists_of(few)[k]->multiplicity, lists_of(many)[k]->multiplicity);
+  }
+  EXPECT_EQ(few.smallest_gap, many.smallest_gap);
+}
+
+TEST(ActiveSet, IsTheSameForAnyNumberOfThreads) {
+  const Soup soup = make_soup({.cells = 70});
+  const int threads = omp_get_max_threads();
+  std::vector<ActiveSet> sets;
+  for (const int n : {1, 2, 7}) {
+    omp_set_num_threads(n);
+    sets.push_back(active_at(soup.surface, soup.x, soup.x, 0.005));
+  }
+  omp_set_num_threads(threads);
+  for (const ActiveSet& set : sets) {
+    for (size_t k = 0; k < kCases; ++k) EXPECT_EQ(lists_of(set)[k]->vertices, lists_of(sets[0])[k]->vertices);
+    EXPECT_EQ(set.smallest_gap, sets[0].smallest_gap);
+    EXPECT_GT(set.edge_edge.count(), 1000u);
+  }
+}
+
+TEST(ActiveSet, AsksForNoMemoryOnceItHasRun) {
+  const int threads = omp_get_max_threads();
+  omp_set_num_threads(1);
+  const Soup soup = make_soup({});
+  const Matrix3Xd other = noise(soup.x, 0.01, 4);
+  BroadPhase broad(soup.surface);
+  broad.cover(soup.x, other, 0.1);
+  ActiveSet active;
+  find_active(soup.surface, broad.candidates(), soup.x, soup.x, 0.1, active);
+  find_active(soup.surface, broad.candidates(), other, soup.x, 0.05, active);
+  const long before = testing::allocations();
+  find_active(soup.surface, broad.candidates(), soup.x, soup.x, 0.1, active);
+  EXPECT_EQ(testing::allocations(), before);
+  EXPECT_GT(active.edge_edge.count(), 10u);
+  omp_set_num_threads(threads);
+}
+
+TEST(ActiveSet, IsEmptyWithoutCandidates) {
+  const Soup soup = make_soup({});
+  ActiveSet active = active_at(soup.surface, soup.x, soup.x, 0.1);
+  find_active(soup.surface, {}, soup.x, soup.x, 0.1, active);
+  for (const ActiveList* list : lists_of(active)) EXPECT_EQ(list->count(), 0u);
+  EXPECT_EQ(active.smallest_gap, std::numeric_limits<double>::infinity());
+}
+
+// The barrier summed over an active set by the formulas of its cases.
+double energy_of(const ActiveSet& active, const Matrix3Xd& x, const Matrix3Xd& X, double dhat) {
+  double sum = 0;
+  for (size_t k = 0; k < kCases; ++k) {
+    const ActiveList& list = *lists_of(active)[k];
+    for (size_t n = 0; n < list.count(); ++n) {
+      const std::vector<int> v = stencil_of(list, n);
+      const auto at = [&](size_t i) -> Vector3d { return x.col(v[i]); };
+      const auto to_line = [&](size_t p, size_t a, size_t b) {
+        return (at(p) - at(a)).cross(at(b) - at(a)).squaredNorm() / (at(b) - at(a)).squaredNorm();
+      };
+      const auto along = [&](const Vector3d& from, const Vector3d& normal) {
+        return std::pow(from.dot(normal), 2) / normal.squaredNorm();
+      };
+      double gap2 = 0, faded = 1;
+      if (k == 0) gap2 = (at(0) - at(1)).squaredNorm();
+      if (k == 1) gap2 = to_line(0, 1, 2);
+      if (k == 2) gap2 = along(at(0) - at(1), (at(2) - at(1)).cross(at(3) - at(1)));
+      if (k == 3) gap2 = along(at(0) - at(2), (at(1) - at(0)).cross(at(3) - at(2)));
+      if (k == 4) gap2 = to_line(0, 2, 3);
+      if (k == 5) gap2 = (at(0) - at(2)).squaredNorm();
+      if (k >= 3) {
+        const double lengths = (X.col(v[1]) - X.col(v[0])).squaredNorm() * (X.col(v[3]) - X.col(v[2])).squaredNorm();
+        const double y = std::min(1000 * (at(1) - at(0)).cross(at(3) - at(2)).squaredNorm() / lengths, 1.0);
+        faded = y * (2 - y);
+      }
+      const double d2 = dhat * dhat;
+      sum -= list.multiplicity[n] * faded * (gap2 - d2) * (gap2 - d2) * std::log(gap2 / d2);
+    }
+  }
+  return sum;
+}
+
+// Where the lists change on the way from state(0) to state(1), the energy on both sides is compared. Returns how often
+// that was, and which cases occurred.
+template <class State>
+std::pair<int, std::set<size_t>> expect_continuous(const CollisionSurface& surface, const Matrix3Xd& X, double dhat,
+                                                   int samples, const State& state) {
+  const int threads = omp_get_max_threads();
+  omp_set_num_threads(1);  // there is little to do, many times
+  BroadPhase broad(surface);
+  broad.cover(noise(X, 3, 1), noise(X, 3, 2), 1);  // nearly all pairs
+  const auto active = [&](double s) {
+    ActiveSet set;
+    find_active(surface, broad.candidates(), state(s), X, dhat, set);
+    return set;
+  };
+  const auto energy = [&](double s) { return energy_of(active(s), state(s), X, dhat); };
+  std::set<size_t> seen;
+  int changes = 0;
+  for (int n = 0; n < samples; ++n) {
+    double s = n / static_cast<double>(samples);
+    const double end = (n + 1) / static_cast<double>(samples);
+    const auto at_end = counts_of(active(end));
+    for (auto now = counts_of(active(s)); now != at_end; now = counts_of(active(s))) {
+      double low = s, high = end;
+      while (high - low > 1e-13) {
+        const double middle = low + (high - low) / 2;
+        (counts_of(active(middle)) == now ? low : high) = middle;
+      }
+      EXPECT_NEAR(energy(low), energy(high), 1e-9 * energy(low) + 1e-12) << "at " << low;
+      ++changes;
+      s = high;
+    }
+    for (size_t k = 0; k < kCases; ++k) {
+      if (!at_end[k].empty()) seen.insert(k);
+    }
+  }
+  omp_set_num_threads(threads);
+  return {changes, seen};
+}
+
+TEST(ActiveSet, TheEnergyIsContinuousWhereNearestPartsChange) {
+  const Soup soup = make_soup({.cells = 2, .loose = 6, .noise = 0.03});
+  const auto [changes, seen] = expect_continuous(soup.surface, soup.x, 0.1, 12, [&](double time) {
+    const double s = 0.3 + 0.3 * time;
+    Matrix3Xd x = soup.x;
+    for (int v = 0; v < x.cols(); ++v) {
+      const int object = soup.surface.object[static_cast<size_t>(v)];
+      if (object == 0) continue;
+      const Eigen::AngleAxisd turn(0.6 * (s - 0.5) * object, Vector3d(1, 0.3 * object, 0.2).normalized());
+      x.col(v) = turn * x.col(v) + s * Vector3d(0.07 * object, 0.11, 0.13 - 0.05 * object);
+    }
+    return x;
+  });
+  EXPECT_GT(changes, 60);
+  for (size_t k = 0; k < 4; ++k) EXPECT_TRUE(seen.contains(k)) << k;
+}
+
+// Two rods slide along each other and swing through parallel.
+TEST(ActiveSet, TheEnergyIsContinuousWhereEdgesBecomeParallel) {
+  const Mesh rod = box_mesh(Element::edge2, {1, 1, 1}, {3, 1, 1});
+  const CollisionSurface surface = make_surface({{"a", &rod, 0, 0}, {"b", &rod, 4, 0}}, std::vector<char>(8, 1));
+  Matrix3Xd X(3, 8);
+  X << rod.X, rod.X;
+  const auto [changes, seen] = expect_continuous(surface, X, 0.1, 100, [&](double s) {
+    Matrix3Xd x = X;
+    const Eigen::AngleAxisd swing(0.06 * std::sin(25 * s), Vector3d(0, 0.8, 0.6));
+    x.rightCols(4) = (swing.toRotationMatrix() * X.rightCols(4)).colwise() + Vector3d(2 * s - 1, 0.02, 0.06);
+    return x;
+  });
+  EXPECT_GT(changes, 50);
+  EXPECT_TRUE(seen.contains(4));
+  EXPECT_TRUE(seen.contains(5));
+  EXPECT_TRUE(seen.contains(3));
 }
 
 }  // namespace

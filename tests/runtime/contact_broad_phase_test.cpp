@@ -158,14 +158,14 @@ TEST(BroadPhase, KeepsItsListsShortHoweverObjectsDeform) {
 }
 
 TEST(BroadPhase, GivesTheSameListForAnyNumberOfThreads) {
-  const Soup soup = make_soup({.cells = 10});
-  const Matrix3Xd x1 = noise(soup.x, 0.05, 3);
+  const Soup soup = make_soup({.cells = 70});
+  const Matrix3Xd x1 = noise(soup.x, 0.005, 3);
   const int threads = omp_get_max_threads();
   std::vector<Candidates> lists;
   for (const int n : {1, 2, 5}) {
     omp_set_num_threads(n);
     BroadPhase broad(soup.surface);
-    broad.cover(soup.x, x1, 0.02);
+    broad.cover(soup.x, x1, 0.002);
     lists.push_back(broad.candidates());
   }
   omp_set_num_threads(threads);
@@ -174,6 +174,7 @@ TEST(BroadPhase, GivesTheSameListForAnyNumberOfThreads) {
     EXPECT_EQ(list.edge_edge, lists[0].edge_edge);
     EXPECT_EQ(list.point_edge, lists[0].point_edge);
     EXPECT_EQ(list.point_point, lists[0].point_point);
+    EXPECT_GT(list.edge_edge.size(), 10000u);
   }
 }
 
