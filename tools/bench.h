@@ -41,6 +41,7 @@ void bench_ccd(const BenchCcd& options, Rows& rows);
 
 struct BenchContact {
   int cells = 199;  // of each cloth, per edge
+  std::string barrier = "squared_log_barrier";
   int threads = 1;
 };
 // The parts of contact on two cloths of side 1 m with (cells + 1)^2 vertices each, noisy and close enough for the

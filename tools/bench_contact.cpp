@@ -52,16 +52,15 @@ struct Cloths {
 // The barrier's potentials, one for each case.
 class Barriers {
  public:
-  Barriers(const Cloths& cloths, const std::vector<ActiveList ActiveSet::*>& lists)
+  Barriers(const std::string& barrier, const Cloths& cloths, const std::vector<ActiveList ActiveSet::*>& lists)
       : lists_(lists), system_(static_cast<int>(cloths.X.cols())) {
-    const std::pair<const char*, const char*> laws[] = {
-        {"point_triangle_barrier", "vertex"}, {"point_triangle_barrier", "edge"},
-        {"point_triangle_barrier", "face"},   {"edge_edge_barrier", "line"},
-        {"edge_edge_barrier", "point_edge"},  {"edge_edge_barrier", "point_point"}};
-    for (const auto& [energy, part] : laws) {
-      system_.add(Potential::on_used_points(fmt::format("{}/{}", energy, part),
-                                            load_kernel(find_energy(energy), part, lanes::best_lanes()), {}, cloths.X,
-                                            {{"dhat", {cloths.dhat}}}, {}));
+    const std::pair<const char*, const char*> distances[] = {{"point_point", ""},         {"point_edge", ""},
+                                                             {"point_triangle", ""},      {"edge_edge", "line"},
+                                                             {"edge_edge", "point_edge"}, {"edge_edge", "point_point"}};
+    for (const auto& [distance, part] : distances) {
+      const std::string name = fmt::format("{}:{}", barrier, distance);
+      system_.add(Potential::on_stencils(name + part, load_kernel(find_energy(name), part, lanes::best_lanes()), {},
+                                         cloths.X, {{"dhat", {cloths.dhat}}}, {}));
     }
   }
   void set(const ActiveSet& active, const Matrix3Xd& X) {
@@ -135,7 +134,7 @@ void bench_contact(const BenchContact& options, Rows& rows) {
   measure("active set", "candidates", candidates,
           [&] { find_active(cloths.surface, broad->candidates(), x, X, cloths.dhat, active); });
 
-  Barriers barriers(cloths, lists);
+  Barriers barriers(options.barrier, cloths, lists);
   Matrix3Xd gradient;
   BlockMatrix hessian;
   measure("stencil lists", "stencils", active_count, [&] { barriers.set(active, X); });

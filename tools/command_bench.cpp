@@ -64,6 +64,7 @@ void add_contact(CLI::App& bench, Run& run) {
   auto options = std::make_shared<BenchContact>();
   auto json = std::make_shared<bool>(false);
   command->add_option("--cells", options->cells, "cells per edge of each cloth");
+  command->add_option("--barrier", options->barrier, "a law of contact in the catalogue");
   command->add_option("--threads", options->threads, "threads to use");
   command->add_flag("--json", *json, "one JSON object per line instead of a table");
   command->callback([options, json, &run] {

@@ -13,6 +13,7 @@ using Pair = std::array<int, 2>;
 
 // Of pairs that are looked at to begin with, so that most others are seen to be free up to their bound at once.
 constexpr std::ptrdiff_t kSample = 64;
+constexpr std::ptrdiff_t kSerial = 1024;  // pairs: fewer are not worth waking other threads
 
 template <size_t N>
 const int (*plain(const std::vector<std::array<int, N>>& items))[N] {
@@ -46,7 +47,7 @@ template <class Step>
 double smallest(const std::vector<Pair>& pairs, std::ptrdiff_t stride, double at_most, const Step& step) {
   const auto count = static_cast<std::ptrdiff_t>(pairs.size());
   double best = at_most;
-#pragma omp parallel reduction(min : best)
+#pragma omp parallel reduction(min : best) if (count / stride > kSerial)
   {
     double own = at_most;
 #pragma omp for schedule(static) nowait
@@ -64,7 +65,7 @@ double smallest_of_many(const std::vector<Pair>& pairs, double at_most, const Fi
   if (!(bound > 0)) return 0;
   const auto count = static_cast<std::ptrdiff_t>(pairs.size());
   double best = bound;
-#pragma omp parallel reduction(min : best)
+#pragma omp parallel reduction(min : best) if (count > kSerial)
   {
     double own = bound;
     lanes::StepRoom room;
