@@ -178,8 +178,13 @@ std::optional<Finding> check_inversion(const Energy& energy, const std::string& 
   ExactInputs flat = sampler.any(energy);
   flat.at("F") = undeformed({3, 3});
   flat.at("F")[8] = Rational(0);
+  ExactInputs mirrored = flat;
+  mirrored.at("F")[8] = Rational(-1);
   const Limit limit = limit_at(energy, case_name, flat, true);
   if (limit.effect >= Effect::value_grows) {
+    for (const ClnJet& margin : derivatives(energy, case_name, mirrored).require)
+      if (!margin.value.defined || !cln::plusp(margin.value.value))
+        return Finding{Severity::ok, "inversion", "infinite at collapse; `require` keeps away from inversion", {}, ""};
     const auto sites = vanishing_sites(energy, case_name, flat);
     const Expression& part = sites.empty() ? *energy.value : *sites.front().expression;
     return Finding{Severity::warning, "inversion",
@@ -188,8 +193,6 @@ std::optional<Finding> check_inversion(const Energy& energy, const std::string& 
                                to_text(part)),
                    start_of(part), state_text(energy, flat)};
   }
-  ExactInputs mirrored = flat;
-  mirrored.at("F")[8] = Rational(-1);
   ExactInputs rest = flat;
   rest.at("F")[8] = Rational(1);
   if (relative_change(energy, case_name, rest, mirrored) == 0)

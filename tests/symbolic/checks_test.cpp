@@ -1,5 +1,6 @@
 #include "symbolic/checks.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -57,6 +58,13 @@ TEST(Checks, SolidsAreCheckedExactly) {
                                            "ok stiffness: every small strain costs energy from 0.01 to 3.79 times the "
                                            "length along one axis (E = 1, nu = 0.3)",
                                            "ok inversion: not finite at inversion; `require` keeps away from it"}));
+}
+
+TEST(Checks, WhatIsInfiniteAtCollapseNeedsARequire) {
+  const std::string law = "density e solid\nparam k Pa (0, inf)\nvalue k/2*(norm2(F) + norm2(inverse(F)) - 6)\n";
+  EXPECT_THAT(faults(parse_energy(law, "e.energy")),
+              testing::ElementsAre(testing::StartsWith("warning inversion: inverse(F) is infinite at det(F) = 0")));
+  EXPECT_EQ(faults(parse_energy(law + "require det(F) > 0\n", "e.energy")), Faults{});
 }
 
 // The state of a finding is one that `ergon eval` takes; here it is read back, to the digits that it is told with.

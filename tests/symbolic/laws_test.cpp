@@ -1,0 +1,123 @@
+// Laws of the catalogue against closed forms.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "symbolic/reference.h"
+#include "tests/symbolic/energy_files.h"
+
+namespace ergon {
+namespace {
+
+ReferenceValue at(const std::string& law, const Inputs& inputs) {
+  return evaluate_reference(test::shipped(law), "", inputs, 50);
+}
+
+// Nominal stress of a bar that is pulled to `stretch` at constant volume and free at its sides, Pa.
+double uniaxial_stress(const std::string& law, Inputs params, double stretch) {
+  const double across = 1 / std::sqrt(stretch);
+  params["F"] = {stretch, 0, 0, 0, across, 0, 0, 0, across};
+  const std::vector<double> P = at(law, params).gradient;
+  return P[0] - P[4] * across / stretch;
+}
+
+// The textbook form: 2*(l - 1/l^2)*(dW/dI1 + dW/dI2/l).
+void expect_uniaxial(const std::string& law, const Inputs& params,
+                     const std::function<double(double stretch, double I1)>& slope) {
+  for (const double l : {0.5, 0.9, 1.1, 1.5, 2.0}) {
+    const double expected = 2 * (l - 1 / (l * l)) * slope(l, l * l + 2 / l);
+    EXPECT_NEAR(uniaxial_stress(law, params, l), expected, 1e-13 * std::abs(expected)) << law << " at " << l;
+  }
+}
+
+TEST(Laws, RubberInUniaxialTension) {
+  expect_uniaxial("mooney_rivlin", {{"C10", {3}}, {"C01", {2}}, {"K", {70}}},
+                  [](double l, double) { return 3 + 2 / l; });
+  expect_uniaxial("yeoh", {{"C1", {3}}, {"C2", {-0.25}}, {"C3", {0.5}}, {"K", {70}}},
+                  [](double, double I1) { return 3 - 0.5 * (I1 - 3) + 1.5 * (I1 - 3) * (I1 - 3); });
+  expect_uniaxial("gent", {{"mu", {3}}, {"Jm", {8}}, {"K", {70}}},
+                  [](double, double I1) { return 1.5 * 8 / (8 - (I1 - 3)); });
+  expect_uniaxial("fung", {{"mu", {3}}, {"b", {0.5}}, {"K", {70}}},
+                  [](double, double I1) { return 1.5 * std::exp(0.5 * (I1 - 3)); });
+  expect_uniaxial("isochoric_neo_hookean", {{"mu", {3}}, {"K", {70}}}, [](double, double) { return 1.5; });
+  expect_uniaxial("arruda_boyce", {{"mu", {3}}, {"N", {8}}, {"K", {70}}}, [](double, double I1) {
+    const double x = I1 / 8;
+    return 3 * (0.5 + x / 10 + 33 * x * x / 1050 + 76 * x * x * x / 7000 + 2595 * x * x * x * x / 673750);
+  });
+}
+
+// A long chain is a neo-Hookean solid; a chain of Gent's without limit too.
+TEST(Laws, LimitsOfRubber) {
+  const double free = uniaxial_stress("isochoric_neo_hookean", {{"mu", {3}}, {"K", {70}}}, 1.5);
+  EXPECT_NEAR(uniaxial_stress("arruda_boyce", {{"mu", {3}}, {"N", {1e9}}, {"K", {70}}}, 1.5), free, 1e-8);
+  EXPECT_NEAR(uniaxial_stress("gent", {{"mu", {3}}, {"Jm", {1e9}}, {"K", {70}}}, 1.5), free, 1e-8);
+}
+
+// Free at its sides a strip has its Young's modulus, and contracts by Poisson's ratio.
+TEST(Laws, MembranesInUniaxialTension) {
+  const double e = 1e-3, nu = 0.25, a = std::sqrt(1 + 2 * e), b = std::sqrt(1 - 2 * nu * e);
+  const std::vector<double> F = {a, 0, 0, 0, b, 0};
+  const ReferenceValue plain = at("st_venant_kirchhoff_membrane", {{"F", F}, {"E", {8}}, {"nu", {nu}}, {"h", {0.5}}});
+  const ReferenceValue woven =
+      at("orthotropic_membrane", {{"F", F}, {"E1", {4}}, {"E2", {2}}, {"nu", {nu}}, {"G", {3}}});
+  for (const ReferenceValue& v : {plain, woven}) {
+    EXPECT_NEAR(v.value, 8 * 0.5 * e * e / 2, 1e-15);
+    EXPECT_NEAR(v.gradient[0], 4 * e * a, 1e-15);
+    EXPECT_NEAR(v.gradient[4], 0, 1e-15);
+  }
+}
+
+TEST(Laws, AClothOfBaraffAndWitkinResistsStretchAndShear) {
+  const ReferenceValue v = at("baraff_witkin", {{"F", {2, 0, 0, 1.5, 2, 0}}, {"ku", {3}}, {"kv", {5}}, {"ks", {7}}});
+  EXPECT_NEAR(v.value, 3.0 / 2 + 5.0 / 2 * 2.25 + 7.0 / 2 * 9, 1e-13);
+}
+
+// A rod bent to a circle stores EI/2 curvature^2 per length; its ends here are 2*tan(angle/2)/length apart from it.
+TEST(Laws, ARodBentToACircle) {
+  const double angle = 1e-3, length = 0.01, EI = 3;
+  const Inputs bent = {
+      {"x0", {-length, 0, 0}}, {"x1", {0, 0, 0}}, {"x2", {length * std::cos(angle), length * std::sin(angle), 0}},
+      {"L0", {length}},        {"L1", {length}},  {"EI", {EI}}};
+  const double curvature = 2 * std::tan(angle / 2) / length;
+  EXPECT_NEAR(at("rod_bending", bent).value, EI / 2 * curvature * curvature * length, 1e-15);
+}
+
+// At small angles the hinges are one.
+TEST(Laws, HingesAgreeAtSmallAngles) {
+  Inputs flat = {{"X0", {0, 0, 0}}, {"X1", {1, 0, 0}}, {"X2", {0.25, 1, 0}}, {"X3", {0.5, -0.75, 0}}, {"k", {2}}};
+  for (const char* point : {"0", "1", "2", "3"}) flat[std::string("x") + point] = flat[std::string("X") + point];
+  flat["x3"][2] = 1e-4;
+  const double by_angle = at("discrete_shell_hinge", flat).value;
+  EXPECT_GT(by_angle, 1e-9);
+  EXPECT_NEAR(at("tan_hinge", flat).value, by_angle, 1e-8 * by_angle);
+}
+
+// Friction grows to the static coefficient at epsv and falls to the kinetic one at epsv + fall.
+TEST(Laws, FrictionIsStaticThenKinetic) {
+  Inputs in = {{"epsv", {0.5}},       {"fall", {0.25}}, {"n", {0, 0, 1}},         {"mu_static", {0.75}},
+               {"mu_kinetic", {0.5}}, {"dt", {0.125}},  {"xlag", {0.5, 0.25, 0}}, {"force", {8}}};
+  const auto force_at = [&](double speed) {
+    in["x"] = {0.5 + 0.125 * speed, 0.25, 0.7};
+    return at("friction", in).gradient[0];
+  };
+  EXPECT_NEAR(force_at(0.25), 8 * 0.75 * 0.75, 1e-14);  // 2 y - y^2 of IPC at half of epsv
+  EXPECT_NEAR(force_at(0.5), 8 * 0.75, 1e-14);
+  EXPECT_NEAR(force_at(0.625), 8 * 0.625, 1e-14);
+  EXPECT_NEAR(force_at(0.75), 8 * 0.5, 1e-14);
+  EXPECT_NEAR(force_at(20), 8 * 0.5, 1e-14);
+  EXPECT_EQ(force_at(0), 0);
+}
+
+// Only below its length less dhat is a rope slack.
+TEST(Laws, ARopeActsOnlyWhereItIsNearlyTaut) {
+  const Inputs taut = {{"x0", {0, 0, 0}}, {"x1", {0, 0, 0.9}}, {"length", {1}}, {"dhat", {0.25}}, {"kappa", {2}}};
+  const ReferenceValue v = at("log_barrier:rope", taut);
+  EXPECT_NEAR(v.value, -2 * 0.15 * 0.15 * std::log(0.1 / 0.25), 1e-15);
+  EXPECT_GT(v.gradient[5], 0);
+  EXPECT_GT(v.active[0], 0);
+}
+
+}  // namespace
+}  // namespace ergon
