@@ -34,7 +34,7 @@ System::System(int vertices) : impl(std::make_shared<Impl>()) {
   set_fixed(std::vector<char>(static_cast<size_t>(vertices), 0));
   impl->x.resize(4 * static_cast<size_t>(vertices), 0.0);
   impl->gradient.resize(4 * static_cast<size_t>(vertices), 0.0);
-  impl->seen.resize(static_cast<size_t>(vertices), 0);
+  impl->taken.resize(static_cast<size_t>(vertices), 0);
 }
 
 int System::vertices() const { return impl->vertices; }
@@ -50,7 +50,8 @@ void System::set_fixed(const std::vector<char>& fixed) {
   impl->block_of.resize(fixed.size());
   impl->free_vertices = 0;
   for (size_t v = 0; v < fixed.size(); ++v) impl->block_of[v] = fixed[v] != 0 ? -1 : impl->free_vertices++;
-  impl->pattern_known = false;
+  ++impl->fixed_version;
+  impl->pattern = nullptr;
   impl->base_known = false;
 }
 
@@ -59,16 +60,19 @@ int System::add(Potential potential) {
   SystemTerm& term = impl->terms.back();
   term.operations = &lanes::lane_operations(term.data().lanes);
   impl->find_configuration(term);
-  term.colour(impl->seen);
-  impl->pattern_known = false;
-  impl->base_known = false;
+  term.check(impl->vertices);
   return potential_count() - 1;
 }
 
-void System::Impl::prepare() {
+void System::Impl::prepare(bool coloured) {
+  if (rooms.size() < static_cast<size_t>(omp_get_max_threads())) {
+    rooms.resize(static_cast<size_t>(omp_get_max_threads()));
+    for (SystemRoom& room : rooms) room.place.resize(static_cast<size_t>(vertices));
+  }
   for (SystemTerm& term : terms) {
     term.data().prepare();
-    term.colour(seen);
+    term.check(vertices);
+    if (coloured) term.colour(rooms, taken);
     term.stencils = term.data().view();
     term.stencils.slots = term.slots.data();
     term.stencils.turned = term.turned.data();
@@ -154,7 +158,7 @@ Evaluation System::Impl::sum(bool margins) const {
 
 Evaluation System::value(const Eigen::Matrix3Xd& x) {
   Impl& d = *impl;
-  d.prepare();
+  d.prepare(false);
   d.load_positions(x);
 #pragma omp parallel if (d.worth_threads())
   for (SystemTerm& term : d.terms) {
@@ -169,7 +173,7 @@ Evaluation System::value(const Eigen::Matrix3Xd& x) {
 
 Evaluation System::gradient(const Eigen::Matrix3Xd& x, Eigen::Matrix3Xd& gradient) {
   Impl& d = *impl;
-  d.prepare();
+  d.prepare(true);
   d.load_positions(x);
   gradient.resize(3, d.vertices);
 #pragma omp parallel if (d.worth_threads())
@@ -193,14 +197,11 @@ Evaluation System::gradient(const Eigen::Matrix3Xd& x, Eigen::Matrix3Xd& gradien
 Evaluation System::hessian(const Eigen::Matrix3Xd& x, Projection projection, Eigen::Matrix3Xd& gradient,
                            BlockMatrix& matrix) {
   Impl& d = *impl;
-  d.prepare();
+  d.prepare(true);
   d.load_positions(x);
   d.update_pattern();
-  if (matrix.pattern_id() != d.pattern.pattern_id()) {
-    matrix = d.pattern;
-    matrix.values().assign(matrix.row_index().size(), 0.0);
-  }
-  d.update_base(projection, matrix);
+  if (matrix.pattern_id() != d.pattern->id) matrix.set_pattern(d.pattern);
+  d.update_base(projection);
   d.update_first();
   gradient.resize(3, d.vertices);
 #pragma omp parallel if (d.worth_threads())

@@ -39,7 +39,7 @@ bool SystemTerm::constant_changed() {
   return changed;
 }
 
-void System::Impl::update_base(Projection projection, BlockMatrix& matrix) {
+void System::Impl::update_base(Projection projection) {
   bool changed = !base_known;
   for (SystemTerm& term : terms) {
     if (term.constant() && !term.kernel().psd_hessian && projection != base_projection) changed = true;
@@ -48,95 +48,34 @@ void System::Impl::update_base(Projection projection, BlockMatrix& matrix) {
   if (!changed) return;
   base_known = true;
   base_projection = projection;
-  base_row.clear();
-  base_values.clear();
-  base_start.assign(static_cast<size_t>(matrix.block_rows()) + 1, 0);
-  if (std::none_of(terms.begin(), terms.end(), [](const SystemTerm& t) { return t.constant(); })) return;
-
-  matrix.set_zero();
+  base.set_zero();
   for (SystemTerm& term : terms) {
     if (!term.constant()) continue;
     term.indefinite = 0;
     for (int chunk = 0; chunk < static_cast<int>(term.results.size()); ++chunk) {
       lanes::ChunkResult result{};
       term.operations->hessian(term.stencils, term.range(chunk), term.blocks(chunk), points_of(term),
-                               static_cast<int>(projection), rooms[0].view(), nullptr, matrix.values().data(), &result);
+                               static_cast<int>(projection), rooms[0].view(), nullptr, base.values().data(), &result);
       term.indefinite += result.indefinite;
-    }
-  }
-  for (int j = 0; j < matrix.block_rows(); ++j) {
-    const int stride = matrix.column_stride(j);
-    const double* column = matrix.values().data() + matrix.column_start()[3 * static_cast<size_t>(j)];
-    for (int row = 0; row < stride; row += 3) {
-      double block[9];
-      for (int c = 0; c < 3; ++c) std::copy_n(column + c * stride + row, 3, block + 3 * c);
-      if (std::all_of(block, block + 9, [](double v) { return v == 0; })) continue;
-      base_row.push_back(row);
-      base_values.insert(base_values.end(), block, block + 9);
-    }
-    base_start[static_cast<size_t>(j) + 1] = static_cast<int>(base_row.size());
-  }
-}
-
-void System::Impl::update_first() {
-  const auto each_base_block = [&](auto f) {
-    for (int j = 0; j < pattern.block_rows(); ++j) {
-      const int diagonal = pattern.index_of(j, j);  // the column's first
-      for (int k = base_start[static_cast<size_t>(j)]; k < base_start[static_cast<size_t>(j) + 1]; ++k) {
-        f(static_cast<size_t>(k), diagonal + base_row[static_cast<size_t>(k)] / 3);
-      }
-    }
-  };
-  bool known = first_known && first_base.size() == base_row.size();
-  each_base_block([&](size_t k, int index) { known = known && first_base[k] == index; });
-  if (known) return;
-  first_known = true;
-  first_base.resize(base_row.size());
-  each_base_block([&](size_t k, int index) { first_base[k] = index; });
-  std::vector<char> written(pattern.blocks(), 0);
-  for (const int index : first_base) written[static_cast<size_t>(index)] = 1;
-  for (SystemTerm& term : terms) {
-    if (!term.assembled()) continue;
-    for (const int chunk : term.chunks) {  // those of one colour share no block
-      for (int i = term.block_start[static_cast<size_t>(chunk)]; i < term.block_start[static_cast<size_t>(chunk) + 1];
-           ++i) {
-        char& before = written[static_cast<size_t>(term.block_index[static_cast<size_t>(i)])];
-        int& stride = term.block_stride[static_cast<size_t>(i)];
-        stride = before != 0 ? std::abs(stride) : -std::abs(stride);
-        before = 1;
-      }
-    }
-  }
-  cleared_column.clear();
-  cleared_row.clear();
-  for (int j = 0; j < pattern.block_rows(); ++j) {
-    const auto first = static_cast<size_t>(pattern.index_of(j, j));
-    for (int row = 0; row < pattern.column_stride(j); row += 3) {
-      if (written[first + static_cast<size_t>(row) / 3] != 0) continue;
-      cleared_column.push_back(j);
-      cleared_row.push_back(row);
     }
   }
 }
 
 void System::Impl::start_matrix(BlockMatrix& matrix) const {
   double* values = matrix.values().data();
-  const int* start = matrix.column_start().data();
 #pragma omp for schedule(static) nowait
-  for (size_t k = 0; k < cleared_row.size(); ++k) {
-    double* place = values + start[3 * cleared_column[k]] + cleared_row[k];
-    const int stride = matrix.column_stride(cleared_column[k]);
+  for (size_t k = 0; k < cleared_index.size(); ++k) {
+    double* place = values + pattern->start_of(cleared_index[k], cleared_column[k]);
+    const int stride = pattern->column_stride(cleared_column[k]);
     for (int c = 0; c < 3; ++c) std::fill_n(place + c * stride, 3, 0.0);
   }
 #pragma omp for schedule(static)
-  for (int j = 0; j < matrix.block_rows(); ++j) {
-    double* column = values + start[3 * j];
-    const int stride = matrix.column_stride(j);
-    for (int k = base_start[static_cast<size_t>(j)]; k < base_start[static_cast<size_t>(j) + 1]; ++k) {
-      const double* block = base_values.data() + 9 * static_cast<size_t>(k);
-      double* place = column + base_row[static_cast<size_t>(k)];
-      for (int c = 0; c < 3; ++c) std::copy_n(block + 3 * c, 3, place + c * stride);
-    }
+  for (size_t k = 0; k < base_index.size(); ++k) {
+    const int j = base_column[k];
+    const double* block = base.values().data() + base.start_of(static_cast<int>(k), j);
+    double* place = values + pattern->start_of(base_index[k], j);
+    const int from = base.column_stride(j), to = pattern->column_stride(j);
+    for (int c = 0; c < 3; ++c) std::copy_n(block + c * from, 3, place + c * to);
   }
 }
 

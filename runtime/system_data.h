@@ -16,30 +16,48 @@ struct RestConfiguration {
   AlignedVector<double> displacement;  // x - X, 4 per vertex
 };
 
+// Room of one thread.
+struct SystemRoom {
+  AlignedVector<double> sums;
+  AlignedVector<double> scratch;
+  std::vector<int> place;  // per vertex of the system
+  std::vector<int> block, places, rank, row, column;
+  std::vector<unsigned long long> bits;
+  lanes::Workspace view() { return {sums.data(), scratch.data()}; }
+};
+
+// What one chunk of a term's stencils touches.
+struct SystemChunk {
+  std::vector<int> vertices;        // of the system, ascending, each once
+  std::vector<int> row, column;     // of the matrix blocks it adds to, by column and then row; each once
+  std::vector<int> index;           // of these in the pattern
+  std::vector<int> offset, stride;  // lanes::ChunkBlocks
+};
+
 // One potential of a system with what evaluation needs beside its own data. Its stencils are cut into chunks, and the
 // chunks coloured so that no two of a colour share a vertex: colours follow one another, the chunks of one are
-// independent.
+// independent. What depends on the list of stencils alone is made apart from what depends on the pattern.
 struct SystemTerm {
   explicit SystemTerm(Potential added) : potential(std::move(added)) {}
 
   Potential potential;
   const lanes::LaneOperations* operations = nullptr;
   lanes::Stencils stencils{};
-  int configuration = -1;  // among the system's rest configurations; -1: the kernel is given positions
+  int configuration = -1;                   // among the system's rest configurations; -1: the kernel is given positions
+  std::vector<lanes::ChunkResult> results;  // per chunk
+  std::vector<SystemChunk> parts;           // per chunk; more when there once were
 
+  unsigned long checked_stencils = 0;   // stencil_version whose vertices are known to be the system's
   unsigned long coloured_stencils = 0;  // stencil_version that the colouring is of
   std::vector<int> chunks;              // in order of colour
   std::vector<int> colour_start;        // into chunks
-  std::vector<lanes::ChunkResult> results;
+  std::vector<int> colour_of;           // per chunk
 
-  unsigned long slotted_stencils = 0;  // stencil_version and pattern that the slots are of
-  unsigned long slotted_pattern = 0;
+  unsigned long numbered_stencils = 0;  // stencil_version and fixed vertices that the slots are of
+  unsigned long numbered_fixed = 0;
   AlignedVector<int> slots;  // lanes::Stencils
   std::vector<unsigned char> turned;
-  std::vector<int> block_start;  // per chunk, into the two below: lanes::ChunkBlocks
-  std::vector<int> block_offset;
-  std::vector<int> block_stride;
-  std::vector<int> block_index;  // of the block in the matrix
+  unsigned long placed_pattern = 0;  // that the chunks' blocks were found in
 
   // A constant Hessian: the versions that the assembled base is made of.
   unsigned long based_stencils = 0;
@@ -55,64 +73,75 @@ struct SystemTerm {
   bool assembled() const { return !kernel().constant_hessian && !kernel().zero_hessian; }
   lanes::BlockRange range(int chunk) const;
   lanes::ChunkBlocks blocks(int chunk) const;
-  int largest_chunk() const;  // in matrix blocks
+  size_t largest_chunk() const;  // in matrix blocks; what it may be at most where lists change
 
-  // Cuts and colours the stencils if they changed. `seen` is room for one mark per vertex.
-  void colour(std::vector<int>& seen);
-  // Finds the places of all blocks in the pattern; false when one is not in it.
-  bool find_slots(const BlockMatrix& pattern, const std::vector<int>& block_of);
+  // Takes a changed list over. Throws InputError for a vertex that is not one of the system's.
+  void check(int vertices);
+  // Colours the chunks if the list changed.
+  void colour(std::vector<SystemRoom>& rooms, std::vector<unsigned long long>& taken);
+  // Numbers the matrix blocks of every chunk if the list or the fixed vertices changed; whether it did.
+  bool number(std::vector<SystemRoom>& rooms, const std::vector<int>& block_of, unsigned long fixed);
+  // Finds the places of all blocks in the pattern; how many are not in it.
+  long find(const BlockPattern& pattern);
   // Whether the constant Hessian differs from that of the last call.
   bool constant_changed();
+
+ private:
+  void list_vertices(std::vector<SystemRoom>& rooms);
 };
 
 struct System::Impl {
   int vertices = 0;
   int free_vertices = 0;
   std::vector<int> block_of;
+  unsigned long fixed_version = 1;
   std::vector<SystemTerm> terms;
 
-  bool pattern_known = false;
-  BlockMatrix pattern;  // without values
+  // Couplings that a list of stencils no longer has stay in the pattern for a while: they may come back, and a new
+  // pattern is a new analysis for the linear solver.
+  std::shared_ptr<BlockPattern> pattern;  // null: not known
+  std::shared_ptr<BlockPattern> spare;    // room of the next one
+  PatternBuilder builder;
+  std::vector<char> recent;  // per block: used since the pattern was made
+  int unused_for = 0;        // changes of lists since when some block was not
 
-  // The sum of the constant Hessians: blocks that are not zero, in the order of the matrix.
+  // The sum of the constant Hessians.
   bool base_known = false;
   Projection base_projection = Projection::clamp;
-  std::vector<int> base_start;      // per block column
-  std::vector<int> base_row;        // of each block: scalar rows below the start of its column
-  std::vector<double> base_values;  // 9 per block, column by column
+  std::shared_ptr<BlockPattern> base_pattern;  // null without such Hessians
+  BlockMatrix base;
+  std::vector<int> base_row, base_column;  // of its blocks
+  std::vector<int> base_index;             // of its blocks in the pattern
 
   // Every block of the matrix is written by the base, stored by the chunk that comes to it first, or in neither and
-  // cleared, so that the matrix is not zeroed beforehand. Known for one pattern and one set of base blocks.
+  // cleared, so that the matrix is not zeroed beforehand.
   bool first_known = false;
-  std::vector<int> first_base;      // the base's blocks, by index in the matrix
-  std::vector<int> cleared_column;  // block columns and scalar rows, as base_row, of the cleared blocks
-  std::vector<int> cleared_row;
+  std::vector<char> used;           // per block: in the base or in some chunk
+  std::vector<int> cleared_column;  // block columns and numbers of the cleared blocks
+  std::vector<int> cleared_index;
 
   AlignedVector<double> x;  // 4 per vertex
   std::vector<RestConfiguration> configurations;
-  AlignedVector<double> gradient;  // 4 per vertex
-  struct Room {
-    AlignedVector<double> sums;
-    AlignedVector<double> scratch;
-    lanes::Workspace view() { return {sums.data(), scratch.data()}; }
-  };
-  std::vector<Room> rooms;  // per thread
-  std::vector<int> seen;
+  AlignedVector<double> gradient;         // 4 per vertex
+  std::vector<SystemRoom> rooms;          // per thread
+  std::vector<unsigned long long> taken;  // per vertex: room of the colouring
 
-  // Brings prepared data and colouring up to date.
-  void prepare();
-  // Brings pattern, slots and rooms up to date.
+  // Brings prepared data up to date, and the colouring where it is `coloured`.
+  void prepare(bool coloured);
+  // Brings patterns, slots and rooms up to date.
   void update_pattern();
+  void update_base_pattern();
+  long find_blocks(bool everywhere);
+  void make_pattern(bool forget);
   void size_rooms();
-  void build_pattern();
-  // Assembles the constant Hessians again if one of them changed; uses matrix as room.
-  void update_base(Projection projection, BlockMatrix& matrix);
+  // Assembles the constant Hessians again if one of them changed.
+  void update_base(Projection projection);
   void load_positions(const Eigen::Matrix3Xd& positions);
   // What a term's kernel is evaluated at: positions or displacements, 4 per vertex.
   const double* points_of(const SystemTerm& term) const;
   // Gives a term whose q is F - I a configuration that agrees with its rest positions.
   void find_configuration(SystemTerm& term);
-  // Finds who writes each block first, if pattern, slots or the base's blocks changed.
+  // Finds who writes each block first, if pattern or slots changed.
   void update_first();
   // Called by all threads of a team: writes the base and clears what no chunk stores.
   void start_matrix(BlockMatrix& matrix) const;

@@ -1,188 +1,168 @@
-// What is made once per list of stencils: colouring, the matrix pattern and the places of all blocks in it.
+// The matrix pattern. It follows the lists of stencils: a list that brings no new coupling leaves it as it is, one that
+// does has it made anew from the old one.
 
-#include <fmt/format.h>
 #include <omp.h>
 
 #include <algorithm>
 
-#include "runtime/error.h"
 #include "runtime/system_data.h"
 
 namespace ergon {
-lanes::ChunkBlocks SystemTerm::blocks(int chunk) const {
-  const int first = block_start[static_cast<size_t>(chunk)];
-  return {block_start[static_cast<size_t>(chunk) + 1] - first, block_offset.data() + first,
-          block_stride.data() + first};
+namespace {
+
+// Changes of lists after which blocks that are no longer used leave the pattern, when nothing else renews it.
+constexpr int kPatience = 32;
+
+// One mark for each block of a pattern, with room for those of a somewhat larger one.
+void clear_marks(std::vector<char>& marks, size_t blocks) {
+  if (marks.capacity() < blocks) marks.reserve(blocks + blocks / 8);
+  marks.assign(blocks, 0);
 }
 
-int SystemTerm::largest_chunk() const {
-  int largest = 0;
-  for (size_t c = 1; c < block_start.size(); ++c) largest = std::max(largest, block_start[c] - block_start[c - 1]);
-  return largest;
-}
+}  // namespace
 
-lanes::BlockRange SystemTerm::range(int chunk) const {
-  return {chunk * data().chunk, std::min((chunk + 1) * data().chunk, data().blocks())};
-}
-
-void SystemTerm::colour(std::vector<int>& seen) {
-  const Potential::Impl& d = data();
-  if (coloured_stencils == d.stencil_version) return;
-  const auto largest = std::max_element(d.vertices.begin(), d.vertices.end());
-  if (largest != d.vertices.end() && static_cast<size_t>(*largest) >= seen.size()) {
-    throw InputError(fmt::format("potential '{}' names vertex {}; the system has vertices 0 to {}", d.name, *largest,
-                                 seen.size() - 1));
-  }
-  coloured_stencils = d.stencil_version;
-  const int count = d.chunks();
-  results.resize(static_cast<size_t>(count));
-  chunks.clear();
-  colour_start.assign(1, 0);
-  std::fill(seen.begin(), seen.end(), 0);
-  std::vector<int> waiting(static_cast<size_t>(count)), later;
-  for (int c = 0; c < count; ++c) waiting[static_cast<size_t>(c)] = c;
-  const size_t per_chunk = static_cast<size_t>(d.chunk * d.points * d.lanes);
-  for (int colour = 1; !waiting.empty(); ++colour) {
-    later.clear();
-    for (const int chunk : waiting) {
-      const size_t first = static_cast<size_t>(chunk) * per_chunk;
-      const size_t last = std::min(first + per_chunk, d.vertices.size());
-      const auto taken = [&](int vertex) { return seen[static_cast<size_t>(vertex)] == colour; };
-      const int* begin = d.vertices.data() + first;
-      const int* end = d.vertices.data() + last;
-      if (std::any_of(begin, end, taken)) {
-        later.push_back(chunk);
-        continue;
-      }
-      for (const int* v = begin; v != end; ++v) seen[static_cast<size_t>(*v)] = colour;
-      chunks.push_back(chunk);
+long SystemTerm::find(const BlockPattern& pattern) {
+  long missing = 0;
+#pragma omp parallel for schedule(static) reduction(+ : missing) if (data().count > 4096)
+  for (size_t chunk = 0; chunk < results.size(); ++chunk) {
+    SystemChunk& part = parts[chunk];
+    const size_t count = part.row.size();
+    part.index.resize(count);
+    part.offset.resize(count);
+    part.stride.resize(count);
+    missing += pattern.find(part.row.data(), part.column.data(), static_cast<int>(count), part.index.data());
+    for (size_t k = 0; k < count; ++k) {
+      part.offset[k] = static_cast<int>(pattern.start_of(part.index[k], part.column[k]));
+      part.stride[k] = pattern.column_stride(part.column[k]);
     }
-    colour_start.push_back(static_cast<int>(chunks.size()));
-    waiting.swap(later);
   }
+  placed_pattern = pattern.id;
+  return missing;
 }
 
-bool SystemTerm::find_slots(const BlockMatrix& pattern, const std::vector<int>& block_of) {
-  const Potential::Impl& d = data();
-  const auto n = static_cast<size_t>(d.points), width = static_cast<size_t>(d.lanes), pairs = n * (n + 1) / 2;
-  const auto vectors = static_cast<size_t>(d.blocks());
-  slots.resize(vectors * pairs * width);
-  turned.assign(d.ascending() ? 0 : vectors * pairs, 0);
-  struct Found {
-    int index, offset, stride;
+// Makes the pattern of all blocks that are used and, unless they are to be forgotten, of those that were used since the
+// last one was made.
+void System::Impl::make_pattern(bool forget) {
+  if (forget) std::fill(recent.begin(), recent.end(), char{0});
+  const auto take = [&](int index, int row, int column) {
+    if (pattern != nullptr && index >= 0) {
+      recent[static_cast<size_t>(index)] = 1;
+    } else {
+      builder.add(row, column);
+    }
   };
-  std::vector<std::vector<Found>> found(results.size());
-  bool missing = false;
-#pragma omp parallel reduction(|| : missing) if (d.count > 4096)
-  {
-    std::vector<int> place(pattern.blocks(), -1);  // in the chunk, by index of the matrix block
-    std::vector<int> wanted;                       // index of the matrix block, by slot
-#pragma omp for schedule(static)
-    for (size_t chunk = 0; chunk < results.size(); ++chunk) {
-      const lanes::BlockRange r = range(static_cast<int>(chunk));
-      const auto first = static_cast<size_t>(r.first), last = static_cast<size_t>(r.last);
-      std::vector<Found>& list = found[chunk];
-      wanted.assign((last - first) * pairs * width, -1);
-      size_t slot = 0;
-      for (size_t vector = first; vector < last; ++vector) {
-        for (size_t a = 0; a < n; ++a) {
-          for (size_t b = 0; b <= a; ++b) {
-            for (size_t l = 0; l < width; ++l, ++slot) {
-              if (static_cast<int>(l) >= d.lanes_in(static_cast<int>(vector))) continue;
-              const int row = block_of[static_cast<size_t>(d.vertices[(vector * n + a) * width + l])];
-              const int column = block_of[static_cast<size_t>(d.vertices[(vector * n + b) * width + l])];
-              if (row < 0 || column < 0) continue;
-              if (row < column) turned[vector * pairs + a * (a + 1) / 2 + b] |= static_cast<unsigned char>(1u << l);
-              const int index = pattern.index_of(std::max(row, column), std::min(row, column));
-              missing = missing || index < 0;
-              wanted[slot] = index;
-              if (index < 0 || place[static_cast<size_t>(index)] == 0) continue;
-              place[static_cast<size_t>(index)] = 0;
-              const int j = std::min(row, column);
-              list.push_back({index, static_cast<int>(pattern.start_of(index, j)), pattern.column_stride(j)});
-            }
-          }
-        }
+  for (const SystemTerm& term : terms) {
+    if (!term.assembled()) continue;
+    for (size_t chunk = 0; chunk < term.results.size(); ++chunk) {
+      const SystemChunk& part = term.parts[chunk];
+      for (size_t k = 0; k < part.row.size(); ++k) {
+        take(pattern != nullptr ? part.index[k] : -1, part.row[k], part.column[k]);
       }
-      std::sort(list.begin(), list.end(), [](const Found& p, const Found& q) { return p.index < q.index; });
-      for (size_t i = 0; i < list.size(); ++i) place[static_cast<size_t>(list[i].index)] = static_cast<int>(i);
-      for (size_t i = 0; i < wanted.size(); ++i) {
-        const int in_chunk = wanted[i] < 0 ? static_cast<int>(list.size()) : place[static_cast<size_t>(wanted[i])];
-        slots[first * pairs * width + i] = lanes::kSumDoubles * in_chunk;
-      }
-      for (const Found& f : list) place[static_cast<size_t>(f.index)] = -1;
     }
   }
-  block_start.assign(1, 0);
-  block_offset.clear();
-  block_stride.clear();
-  block_index.clear();
-  for (const std::vector<Found>& list : found) {
-    for (const Found& f : list) {
-      block_offset.push_back(f.offset);
-      block_stride.push_back(f.stride);
-      block_index.push_back(f.index);
-    }
-    block_start.push_back(static_cast<int>(block_offset.size()));
+  for (size_t k = 0; k < base_row.size(); ++k) {
+    take(pattern != nullptr ? base_index[k] : -1, base_row[k], base_column[k]);
   }
-  slotted_stencils = d.stencil_version;
-  slotted_pattern = missing ? 0 : pattern.pattern_id();
-  stencils.slots = slots.data();
-  stencils.turned = turned.data();
-  return !missing;
+  if (spare == nullptr || spare.use_count() > 1) spare = std::make_shared<BlockPattern>();
+  builder.build(free_vertices, pattern.get(), recent, *spare);
+  std::swap(pattern, spare);
+  clear_marks(recent, pattern->blocks());
+  unused_for = 0;
 }
 
-void System::Impl::build_pattern() {
-  std::vector<std::pair<int, int>> pairs;
+long System::Impl::find_blocks(bool everywhere) {
+  long missing = 0;
+  for (SystemTerm& term : terms) {
+    if (term.assembled() && (everywhere || term.placed_pattern != pattern->id)) missing += term.find(*pattern);
+  }
+  base_index.resize(base_row.size());
+  missing += pattern->find(base_row.data(), base_column.data(), static_cast<int>(base_row.size()), base_index.data());
+  return missing;
+}
+
+void System::Impl::update_base_pattern() {
   for (const SystemTerm& term : terms) {
-    if (term.kernel().zero_hessian) continue;
-    const std::vector<int>& stencils = term.data().stencils;
-    const std::vector<int>& used = term.data().used;
-    for (size_t first = 0; first < stencils.size(); first += static_cast<size_t>(term.data().listed)) {
-      for (size_t a = 1; a < used.size(); ++a) {
-        const int row = block_of[static_cast<size_t>(stencils[first + static_cast<size_t>(used[a])])];
-        for (size_t b = 0; b < a && row >= 0; ++b) {
-          const int column = block_of[static_cast<size_t>(stencils[first + static_cast<size_t>(used[b])])];
-          if (column >= 0) pairs.emplace_back(row, column);
-        }
-      }
+    for (size_t chunk = 0; term.constant() && chunk < term.results.size(); ++chunk) {
+      const SystemChunk& part = term.parts[chunk];
+      for (size_t k = 0; k < part.row.size(); ++k) builder.add(part.row[k], part.column[k]);
     }
   }
-  pattern = BlockMatrix(free_vertices, pairs);
-  pattern.values() = {};
-  pattern_known = true;
+  base_pattern = std::make_shared<BlockPattern>();
+  builder.build(free_vertices, nullptr, {}, *base_pattern);
+  base.set_pattern(base_pattern);
   base_known = false;
-  first_known = false;
+  base_row = base_pattern->block_row;
+  base_column.clear();
+  for (int j = 0; j < free_vertices; ++j) base_column.resize(static_cast<size_t>(base_pattern->block_start[j + 1]), j);
+  for (SystemTerm& term : terms) {
+    if (term.constant()) term.find(*base_pattern);
+  }
 }
 
 void System::Impl::update_pattern() {
-  if (!pattern_known) build_pattern();
-  for (size_t t = 0; t < terms.size(); ++t) {
-    SystemTerm& term = terms[t];
-    if (term.kernel().zero_hessian) continue;
-    if (term.slotted_stencils == term.data().stencil_version && term.slotted_pattern == pattern.pattern_id()) continue;
+  bool base_changed = false, changed = false;
+  for (SystemTerm& term : terms) {
+    if (term.kernel().zero_hessian || !term.number(rooms, block_of, fixed_version)) continue;
+    (term.constant() ? base_changed : changed) = true;
+    term.placed_pattern = 0;
+  }
+  if (base_changed) update_base_pattern();
+  if (changed || base_changed || pattern == nullptr) {
     first_known = false;
-    if (term.find_slots(pattern, block_of)) continue;
-    // A new coupling: all slots are to be found again in a pattern that has it.
-    build_pattern();
-    t = static_cast<size_t>(-1);
+    if (pattern == nullptr || find_blocks(false) > 0 || unused_for > kPatience) {
+      make_pattern(unused_for > kPatience);
+      find_blocks(true);
+    }
   }
   size_rooms();
 }
 
 void System::Impl::size_rooms() {
-  int scratch = 0, blocks = 0;
+  size_t scratch = 0, blocks = 0;
   for (const SystemTerm& term : terms) {
     if (term.kernel().zero_hessian) continue;
-    scratch = std::max(scratch, term.operations->scratch_size(term.stencils));
+    scratch = std::max(scratch, static_cast<size_t>(term.operations->scratch_size(term.stencils)));
     blocks = std::max(blocks, term.largest_chunk());
   }
-  rooms.resize(std::max(rooms.size(), static_cast<size_t>(omp_get_max_threads())));
-  for (Room& room : rooms) {
-    const size_t sums = static_cast<size_t>(blocks + 1) * lanes::kSumDoubles;
+  for (SystemRoom& room : rooms) {
+    const size_t sums = (blocks + 1) * lanes::kSumDoubles;
     if (room.sums.size() < sums) room.sums.resize(sums, 0.0);
-    if (room.scratch.size() < static_cast<size_t>(scratch)) room.scratch.resize(static_cast<size_t>(scratch));
+    if (room.scratch.size() < scratch) room.scratch.resize(scratch);
   }
+}
+
+void System::Impl::update_first() {
+  if (first_known) return;
+  first_known = true;
+  clear_marks(used, pattern->blocks());
+  for (const int index : base_index) used[static_cast<size_t>(index)] = 1;
+  for (SystemTerm& term : terms) {
+    if (!term.assembled()) continue;
+    for (const int chunk : term.chunks) {  // those of one colour share no block
+      SystemChunk& part = term.parts[static_cast<size_t>(chunk)];
+      for (size_t k = 0; k < part.index.size(); ++k) {
+        char& before = used[static_cast<size_t>(part.index[k])];
+        part.stride[k] = before != 0 ? std::abs(part.stride[k]) : -std::abs(part.stride[k]);
+        before = 1;
+      }
+    }
+  }
+  cleared_column.clear();
+  cleared_index.clear();
+  bool coupling_unused = false;
+  for (int j = 0; j < pattern->block_rows; ++j) {
+    const int last = pattern->block_start[static_cast<size_t>(j) + 1];
+    for (int k = pattern->block_start[static_cast<size_t>(j)]; k < last; ++k) {
+      if (used[static_cast<size_t>(k)] != 0) {
+        recent[static_cast<size_t>(k)] = 1;
+        continue;
+      }
+      coupling_unused = coupling_unused || pattern->block_row[static_cast<size_t>(k)] != j;
+      cleared_column.push_back(j);
+      cleared_index.push_back(k);
+    }
+  }
+  unused_for = coupling_unused ? unused_for + 1 : 0;
 }
 
 }  // namespace ergon

@@ -4,6 +4,7 @@
 #include "runtime/lanes/evaluate_hessian.h"
 #include "runtime/lanes/evaluate_isotropic.h"
 #include "runtime/lanes/evaluate_projection.h"
+#include "runtime/lanes/number_blocks.h"
 
 namespace ergon::lanes {
 
@@ -14,14 +15,6 @@ const LaneOperations& ERGON_OPERATIONS(ERGON_LANES)();
 namespace {
 
 constexpr double kInfinity = __builtin_inf();
-
-// Lanes from this one on are padding.
-int lanes_of(const Stencils& s, int block) {
-  const int whole = s.chunk * kWidth, first = block / s.chunk * s.chunk, left = s.count - first * kWidth;
-  if (left >= whole) return kWidth;
-  const int n = (left + kWidth - 1) / kWidth;
-  return (left - (block - first) + n - 1) / n;
-}
 
 constexpr int kAhead = 3;  // blocks
 
@@ -173,7 +166,8 @@ void hessian_of(const Stencils& s, BlockRange range, const ChunkBlocks& blocks, 
 }
 
 const LaneOperations kOperations = {
-    kWidth, [](const Stencils& s) { return with_shape(s, [&]<class S>(S) { return scratch_of<S>(s); }); },
+    kWidth,
+    [](const Stencils& s) { return with_shape(s, [&]<class S>(S) { return scratch_of<S>(s); }); },
     [](const Stencils& s, BlockRange range, const double* x, ChunkResult* result) {
       with_shape(s, [&]<class S>(S) { value_of<S>(s, range, x, result); });
     },
@@ -184,7 +178,8 @@ const LaneOperations kOperations = {
        const Workspace& room, double* gradient, double* values, ChunkResult* result) {
       with_shape(s,
                  [&]<class S>(S) { hessian_of<S>(s, range, blocks, x, projection, room, gradient, values, result); });
-    }};
+    },
+    number_chunk_blocks};
 
 }  // namespace
 

@@ -75,6 +75,20 @@ struct ChunkResult {
   long indefinite;  // Hessians that projection changed
 };
 
+// Numbers the matrix blocks that a chunk adds to.
+struct ChunkNumbering {
+  int free;                  // vertices of the chunk that are not fixed
+  const int* place;          // by vertex: its place among these in ascending order, -1 when fixed
+  const int* block;          // by place: its block row in the matrix
+  int* places;               // room: [block][points][W] of one chunk
+  unsigned long long* bits;  // room: free*(free + 63)/64 words, zero before and after
+  int* rank;                 // room: as many
+  int* slots;                // of all stencils: as in Stencils
+  unsigned char* turned;     // likewise; zero before
+  int* row;                  // block row and column in the matrix of every block, by column and then row
+  int* column;
+};
+
 struct LaneOperations {
   int lanes;
   int (*scratch_size)(const Stencils&);  // doubles
@@ -83,6 +97,8 @@ struct LaneOperations {
   // Adds to gradient (unless it is null) and to the matrix values.
   void (*hessian)(const Stencils&, BlockRange, const ChunkBlocks&, const double* x, int projection, const Workspace&,
                   double* gradient, double* values, ChunkResult*);
+  // Returns how many blocks there are.
+  int (*number_blocks)(const Stencils&, BlockRange, const ChunkNumbering&);
 };
 
 // Those there is code for, ascending. Two lanes are what every x86-64 processor has (SSE2), and ARM ones (NEON).

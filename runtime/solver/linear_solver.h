@@ -22,7 +22,8 @@ class LinearSolver {
   LinearSolver& operator=(LinearSolver&&) noexcept;
 
   // Orders the unknowns and finds the factor's pattern. Does nothing while matrix.pattern_id() is that of the last
-  // call.
+  // call, and keeps the order for other patterns of as many rows until their factors cost more than another order
+  // would.
   void analyse(const BlockMatrix& matrix);
 
   // Factors matrix + shift * identity (shift in the matrix's unit), analysing first if needed. Empty when the factor
@@ -35,6 +36,7 @@ class LinearSolver {
   void solve(const Eigen::VectorXd& right_side, Eigen::VectorXd& solution);
 
   long analyses() const;          // made so far
+  long orderings() const;         // found for these; the other analyses kept the last one
   long factorisations() const;    // tried so far
   double factor_entries() const;  // nonzeros of the factor, 0 before the first analysis
   double factor_flops() const;    // per factorisation

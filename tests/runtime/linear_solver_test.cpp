@@ -90,6 +90,42 @@ TEST(LinearSolver, AnalysesOncePerPattern) {
   EXPECT_EQ(solver.analyses(), 2);
 }
 
+TEST(LinearSolver, KeepsItsOrderForPatternsThatAreMuchTheSame) {
+  constexpr int side = 30, n = side * side;
+  LinearSolver solver;
+  // A grid whose vertices are numbered `step` apart, and one more coupling.
+  const auto solve_grid = [&](int step, int chord) {
+    std::vector<std::pair<int, int>> pairs{{0, chord}};
+    for (int i = 0; i < n; ++i) {
+      if (i % side != 0) pairs.emplace_back(i * step % n, (i - 1) * step % n);
+      if (i >= side) pairs.emplace_back(i * step % n, (i - side) * step % n);
+    }
+    BlockMatrix matrix(n, pairs);
+    for (const auto& [a, b] : pairs) {
+      set_block(matrix, std::max(a, b), std::min(a, b), -Eigen::Matrix3d::Identity());
+    }
+    for (int i = 0; i < n; ++i) set_block(matrix, i, i, 7 * Eigen::Matrix3d::Identity());
+    ASSERT_FALSE(solver.factor(matrix).has_value());
+    const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(3 * n, -1, 2);
+    Eigen::VectorXd x, product(3 * n);
+    solver.solve(b, x);
+    matrix.multiply(x, product);
+    EXPECT_LT((product - b).norm(), 1e-13 * b.norm());
+  };
+  solve_grid(1, 2);
+  const double flops = solver.factor_flops();
+  EXPECT_EQ(solver.orderings(), 1);
+  solve_grid(1, 2 * side);
+  solve_grid(1, 5 * side);
+  EXPECT_EQ(solver.orderings(), 1);
+  EXPECT_EQ(solver.analyses(), 3);
+  EXPECT_LT(solver.factor_flops(), flops + 5e4 * n);
+  solve_grid(97, 2);
+  EXPECT_EQ(solver.orderings(), 2);
+  EXPECT_EQ(solver.analyses(), 4);
+  EXPECT_LT(solver.factor_flops(), 1.5 * flops);
+}
+
 TEST(LinearSolver, NamesTheRowWithoutAPositivePivot) {
   Problem problem = random_problem(40, 5);
   Eigen::Matrix3d bad = Eigen::Matrix3d::Identity() * 20;
