@@ -75,6 +75,28 @@ TEST_F(catalogue, refuses_one_name_twice_and_folders_that_are_not_there) {
   EXPECT_EQ(message_of([&] { Catalogue({"/no/such"}); }), "/no/such: there is no such folder of energies");
 }
 
+TEST_F(catalogue, composes_barriers_with_distances) {
+  const Catalogue energies({shipped});
+  std::ofstream(folder / "mine.energy") << "barrier mine\nparam k N/m\nvalue k*gap2\n";
+  EXPECT_EQ(energies.read_complete("mine.energy:rope:offset", folder.string(), {}).name, "mine:rope:offset");
+  EXPECT_EQ(energies.read("log_barrier", "", {}).kind, Energy::Kind::barrier);
+  auto message = [&](const std::string& name) {
+    return message_of([&] { energies.read_complete(name, "", {"a.toml", 2, 3}); });
+  };
+  EXPECT_EQ(
+      message("log_barrier"),
+      "a.toml:2:3: log_barrier is a barrier over a gap; name the distance with it, as in "
+      "log_barrier:point_triangle (known are edge_edge, half_space, point_edge, point_point, point_triangle, rope)");
+  EXPECT_EQ(message("rope"), "a.toml:2:3: rope is a distance; name a barrier with it, as in log_barrier:rope");
+  EXPECT_EQ(message("spring:rope"),
+            "a.toml:2:3: spring is not a barrier; only a law that begins with `barrier` is composed with a distance");
+  EXPECT_EQ(message("log_barrier:ropes"),
+            "a.toml:2:3: there is no distance 'ropes'; known are edge_edge, half_space, point_edge, point_point, "
+            "point_triangle, rope; did you mean 'rope'?");
+  EXPECT_EQ(message("log_barrier:rope:thick"),
+            "a.toml:2:3: expected LAW:DISTANCE or LAW:DISTANCE:offset, found 'log_barrier:rope:thick'");
+}
+
 TEST_F(catalogue, suggests_the_nearest_name) {
   EXPECT_THAT(message_of([&] {
                 Catalogue({shipped}).file_of("stable_neohookean", "", {"a.toml", 2, 3});
