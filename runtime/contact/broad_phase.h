@@ -21,7 +21,7 @@ struct Candidates {
 
 class BroadPhase {
  public:
-  // `surface` must outlive this.
+  // `surface` must outlive this. What is in it may not change, but for which objects meet.
   explicit BroadPhase(const CollisionSurface& surface);
   ~BroadPhase();
 
