@@ -3,34 +3,15 @@
 #include <algorithm>
 #include <numeric>
 
-#include "runtime/contact/box_tree.h"
 #include "runtime/contact/motion_boxes.h"
 #include "runtime/contact/near_pairs.h"
 #include "runtime/contact/object_pairs.h"
 #include "runtime/contact/slack.h"
+#include "runtime/contact/surface_trees.h"
 
 namespace ergon {
 
 namespace {
-
-// Primitives of one kind, in the numbers of MotionBoxes.
-template <size_t N>
-BoxTree tree_of(const std::vector<std::array<int, N>>& primitives, const std::vector<char>& kept,
-                const CollisionSurface& surface, const MotionBoxes& motion) {
-  std::vector<int> corners, ids, object;
-  std::vector<char> moving;
-  for (const int v : surface.points) {
-    object.push_back(surface.object[static_cast<size_t>(v)]);
-    moving.push_back(surface.moving[static_cast<size_t>(v)]);
-  }
-  for (size_t i = 0; i < primitives.size(); ++i) {
-    if (!kept.empty() && !kept[i]) continue;
-    for (const int v : primitives[i]) corners.push_back(motion.number_of(v));
-    ids.push_back(static_cast<int>(i));
-  }
-  return {
-      static_cast<int>(N), std::move(corners), std::move(ids), object, moving, static_cast<int>(surface.radius.size())};
-}
 
 std::vector<std::array<int, 1>> points_of(const CollisionSurface& surface) {
   std::vector<std::array<int, 1>> points;
@@ -79,11 +60,11 @@ struct BroadPhase::Impl {
   explicit Impl(const CollisionSurface& s)
       : surface(&s),
         motion(s),
-        points(tree_of(points_of(s), {}, s, motion)),
-        edges(tree_of(s.edges, {}, s, motion)),
-        triangles(tree_of(s.triangles, {}, s, motion)),
-        loose(tree_of(points_of(s), loose_points(s), s, motion)),
-        rods(tree_of(s.edges, rod_edges(s), s, motion)) {}
+        points(tree_of(points_of(s), {}, s)),
+        edges(tree_of(s.edges, {}, s)),
+        triangles(tree_of(s.triangles, {}, s)),
+        loose(tree_of(points_of(s), loose_points(s), s)),
+        rods(tree_of(s.edges, rod_edges(s), s)) {}
 
   void make(const Eigen::Matrix3Xd& x0, const Eigen::Matrix3Xd& x1, double excess);
 

@@ -5,15 +5,17 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-#include "runtime/contact/box_tree.h"
 #include "runtime/contact/pair_list.h"
+#include "runtime/contact/surface_trees.h"
 #include "runtime/error.h"
 #include "runtime/predicates.h"
 
 namespace ergon {
 namespace {
 
-// Boxes of points, numbered in the order of surface.points, in units that fit all into an int.
+constexpr std::ptrdiff_t kSerial = 4096;  // pairs: fewer are not worth waking other threads
+
+// Boxes of points, in the order of surface.points, in units that fit all into an int.
 std::vector<IntegerBox> boxes_of(const CollisionSurface& surface, const Eigen::Matrix3Xd& x) {
   constexpr double kUnits = 1 << 29;  // along the longest side
   Eigen::AlignedBox3d all;
@@ -34,33 +36,15 @@ std::vector<IntegerBox> boxes_of(const CollisionSurface& surface, const Eigen::M
   return boxes;
 }
 
-template <size_t N>
-BoxTree tree_of(const std::vector<std::array<int, N>>& primitives, const CollisionSurface& surface,
-                const std::vector<IntegerBox>& boxes) {
-  std::vector<int> number(surface.object.size(), -1), corners, ids, object;
-  std::vector<char> moving;
-  for (size_t i = 0; i < surface.points.size(); ++i) {
-    const auto v = static_cast<size_t>(surface.points[i]);
-    number[v] = static_cast<int>(i);
-    object.push_back(surface.object[v]);
-    moving.push_back(surface.moving[v]);
-  }
-  for (size_t i = 0; i < primitives.size(); ++i) {
-    for (const int v : primitives[i]) corners.push_back(number[static_cast<size_t>(v)]);
-    ids.push_back(static_cast<int>(i));
-  }
-  BoxTree tree(static_cast<int>(N), corners, ids, object, moving, static_cast<int>(surface.radius.size()));
-  tree.fit(boxes);
-  return tree;
-}
-
 }  // namespace
 
 std::vector<Intersection> find_intersections(const CollisionSurface& surface, const Eigen::Matrix3Xd& x) {
   std::vector<Intersection> found;
   if (surface.edges.empty() || surface.triangles.empty()) return found;
   const std::vector<IntegerBox> boxes = boxes_of(surface, x);
-  const BoxTree edges = tree_of(surface.edges, surface, boxes), triangles = tree_of(surface.triangles, surface, boxes);
+  BoxTree edges = tree_of(surface.edges, {}, surface), triangles = tree_of(surface.triangles, {}, surface);
+  edges.fit(boxes);
+  triangles.fit(boxes);
   PairList near(edges, triangles);
   for (int i = 0; i < static_cast<int>(surface.radius.size()); ++i) {
     for (int j = 0; j < static_cast<int>(surface.radius.size()); ++j) {
@@ -70,7 +54,7 @@ std::vector<Intersection> find_intersections(const CollisionSurface& surface, co
   std::vector<std::array<int, 2>> pairs, meeting;
   near.write(pairs);
   const auto count = static_cast<std::ptrdiff_t>(pairs.size());
-#pragma omp parallel for schedule(dynamic, 256)
+#pragma omp parallel for schedule(dynamic, 256) if (count >= kSerial)
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     const auto& pair = pairs[static_cast<size_t>(i)];
     const auto& e = surface.edges[static_cast<size_t>(pair[0])];

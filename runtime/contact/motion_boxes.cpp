@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "runtime/contact/surface_trees.h"
 #include "runtime/error.h"
 
 namespace ergon {
@@ -24,11 +25,8 @@ constexpr double kDrift = 0.25;     // of the slack: mean motions below it are l
 }  // namespace
 
 MotionBoxes::MotionBoxes(const CollisionSurface& surface)
-    : surface_(&surface), number_(surface.object.size(), -1), count_(surface.radius.size(), 0) {
-  for (size_t i = 0; i < surface.points.size(); ++i) {
-    number_[static_cast<size_t>(surface.points[i])] = static_cast<int>(i);
-    count_[object_of(surface.points[i])] += 1;
-  }
+    : surface_(&surface), number_(point_numbers(surface)), count_(surface.radius.size(), 0) {
+  for (const int v : surface.points) count_[object_of(v)] += 1;
 }
 
 double MotionBoxes::half(double reach, int vertex) const { return reach / 2 + surface_->radius[object_of(vertex)]; }
