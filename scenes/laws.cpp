@@ -92,8 +92,11 @@ void check_supported(const Energy& energy, const EnergyUse& use) {
                                     rest->name, energy.name));
   }
   for (const Symbol* lag : energy.with_role(Role::lag)) {
-    std::string stem = lag->name.substr(0, lag->name.find_last_not_of("0123456789") + 1);
-    if (stem != "dt" && stem != "xhat" && stem != "xlag")
+    const auto of_point = [&](const Symbol* dof) {
+      return lag->name == dof->name + "hat" || lag->name == dof->name + "lag";
+    };
+    const std::vector<const Symbol*> dofs = energy.with_role(Role::dof);
+    if (lag->name != "dt" && std::none_of(dofs.begin(), dofs.end(), of_point))
       throw SourceError(place, fmt::format("a scene does not renew the lag '{}' of {}: it knows dt, xhat and xlag",
                                            lag->name, energy.name));
   }

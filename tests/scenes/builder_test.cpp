@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "runtime/mesh/mesh_tools.h"
@@ -47,6 +48,20 @@ TEST(builder, asks_only_for_the_kernels_that_are_used_and_says_what_is_left_out)
                           "log_barrier, friction: there is no ground, no kernels loaded"));
   EXPECT_THAT(build_text(time_part + block + "[[ground]]\n").skipped,
               ElementsAre("friction: no ground has a coefficient of friction 'mu', no kernel loaded"));
+}
+
+// Drag takes what it says from a body that flies free of other forces; a dashpot between its points takes nothing.
+TEST(builder, damping_takes_its_lags_from_the_step) {
+  const std::string law = "energy = [{ law = \"stable_neo_hookean\", E = \"0.5 MPa\", nu = 0.4 }";
+  std::string damped = block;
+  damped.replace(damped.find(law), law.size(), law + ", { law = \"drag\", rate = 10 }, { law = \"damper\", c = 1 }");
+  BuiltScene built = build_text("gravity = [0, 0, 0]\n" + time_part + damped);
+  TimeStepper stepper(*built.system, built.mass, nullptr, built.step);
+  State state = built.start;
+  for (int i = 1; i <= 2; ++i) {
+    EXPECT_TRUE(stepper.step(state).converged);
+    EXPECT_NEAR((state.v.row(0).array() - std::pow(1 + 10 * 0.01, -i)).abs().maxCoeff(), 0, 1e-6);
+  }
 }
 
 TEST(builder, lays_out_masses_velocities_and_fixed_vertices) {
