@@ -126,6 +126,39 @@ TEST(BroadPhase, KeepsAListForAsLongAsItIsGood) {
   EXPECT_TRUE(broad.cover(x, x, 0.001));
 }
 
+// Of points alone boxes are all there is between the list and the distance.
+TEST(BroadPhase, MissesNoPointThatDriftsIntoReach) {
+  Mesh grains;
+  grains.element = Element::point;
+  grains.X = 0.5 * noise(Matrix3Xd::Zero(3, 400), 0.5, 1);
+  grains.X.bottomRows(2) *= 1e-3;  // nearly along a line, so that distances are those along an axis of the boxes
+  Matrix3Xd step = noise(Matrix3Xd::Zero(3, 400), 0.0005, 2);
+  step.bottomRows(2).setZero();
+  for (int v = 0; v < 400; ++v) grains.cells.push_back(v);
+  const CollisionSurface surface = make_surface({{"grains", &grains, 0, 0.002}}, std::vector<char>(400, 1));
+  BroadPhase broad(surface);
+  const double reach = 0.02, touching = reach + surface.offset(0, 0);
+  Matrix3Xd x = grains.X;
+  int kept = 0, near = 0;
+  for (int n = 0; n < 150; ++n) {
+    const Matrix3Xd next = x + step;
+    kept += !broad.cover(x, next, reach);
+    x = next;
+    const Pairs listed(broad.candidates().point_point.begin(), broad.candidates().point_point.end());
+    for (int p = 0; p < 400; ++p) {
+      for (int q = p + 1; q < 400; ++q) {
+        if ((x.col(p) - x.col(q)).norm() >= touching) continue;
+        ++near;
+        EXPECT_TRUE(listed.contains({p, q})) << p << " " << q;
+      }
+    }
+    EXPECT_LT(listed.size(), 20000u);
+  }
+  EXPECT_GT(kept, 50);
+  EXPECT_LT(kept, 150);
+  EXPECT_GT(near, 1000);
+}
+
 TEST(BroadPhase, SkipsObjectsThatAreApart) {
   Soup soup = make_soup({.resting = 0.1});
   const PairOracle oracle(soup.surface);
