@@ -53,7 +53,8 @@ void check_element(const Energy& density, Element element) {
 }
 
 std::map<std::string, std::vector<double>> sample_values(const Energy& energy, Role role, int attempt) {
-  std::mt19937_64 random(static_cast<unsigned long>(attempt));
+  // Rest data are drawn apart from params: an offset is not to equal a length.
+  std::mt19937_64 random(static_cast<unsigned long>(attempt) + (role == Role::rest ? 1000000 : 0));
   auto uniform = [&random](double low, double high) { return low + (high - low) * double(random() >> 11) * 0x1p-53; };
   std::map<std::string, std::vector<double>> values;
   for (const Symbol* symbol : energy.with_role(role)) {
