@@ -39,7 +39,7 @@ TEST_F(CommandLine, NamesWhatWasMisspelt) {
   expect("", 2, "'ergon' needs a command: run, check, show, compile, cost, eval, bench, accuracy");
   expect("chek x", 2, "unknown command 'ergon chek'; did you mean 'check'?");
   expect("bench kernel", 2, "unknown command 'ergon bench kernel'; did you mean 'kernels'?");
-  expect("bench", 2, "'ergon bench' needs a command: kernels, compile, scene");
+  expect("bench", 2, "'ergon bench' needs a command: kernels, compile, contact, ccd, scene");
   expect("run --thread 2 x.toml", 2, "unknown option '--thread' of 'ergon run'; did you mean '--threads'?");
   expect("check a.energy b.energy", 2, "'ergon check' does not expect 'b.energy'; see 'ergon check --help'");
   expect("run", 2, "scene is required; see 'ergon run --help'");
