@@ -178,11 +178,13 @@ double BoxTree::refit(const std::vector<IntegerBox>& boxes) {
 void BoxTree::meet(const Node* root_a, const Node* root_b, const int* shift_lower, const int* shift_upper,
                    std::vector<lanes::LeafPair>& pairs) {
   const auto overlap = [&](const Node& a, const Node& b) {
-    bool yes = a.moving || b.moving;
+    if (!a.moving && !b.moving) return false;
+    int apart = 0;
     for (size_t k = 0; k < 3; ++k) {
-      yes = yes & (a.lower[k] <= b.upper[k] + shift_upper[k]) & (b.lower[k] + shift_lower[k] <= a.upper[k]);
+      apart |= static_cast<int>(a.lower[k] > b.upper[k] + shift_upper[k]) |
+               static_cast<int>(b.lower[k] + shift_lower[k] > a.upper[k]);
     }
-    return yes;
+    return apart == 0;
   };
   const auto visit = [&](const auto& self, const Node* a, const Node* b) -> void {
     if (a == b) {

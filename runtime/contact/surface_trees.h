@@ -36,8 +36,7 @@ BoxTree tree_of(const std::vector<std::array<int, N>>& primitives, const std::ve
     for (const int v : primitives[i]) corners.push_back(numbers[static_cast<size_t>(v)]);
     ids.push_back(static_cast<int>(i));
   }
-  return {
-      static_cast<int>(N), std::move(corners), std::move(ids), object, moving, static_cast<int>(surface.radius.size())};
+  return {static_cast<int>(N), corners, ids, object, moving, static_cast<int>(surface.radius.size())};
 }
 
 }  // namespace ergon
