@@ -138,7 +138,6 @@ void System::Impl::find_configuration(SystemTerm& term) {
 Evaluation System::Impl::sum(bool margins) const {
   Evaluation evaluation;
   evaluation.require = kInfinity;
-  evaluation.by_potential.reserve(terms.size());
   for (const SystemTerm& term : terms) {
     double value = 0, require = kInfinity;
     for (const lanes::ChunkResult& chunk : term.results) {

@@ -9,12 +9,13 @@
 
 #include "runtime/block_matrix.h"
 #include "runtime/potential.h"
+#include "runtime/potential_values.h"
 
 namespace ergon {
 
 struct Evaluation {
-  double value = 0;                  // J
-  std::vector<double> by_potential;  // J, in order of addition
+  double value = 0;              // J
+  PotentialValues by_potential;  // J, in order of addition
   // Smallest margin of all `require` conditions, +inf without any; not positive: the state is outside the domain. A
   // margin or an energy that is not finite makes it -inf. Found by value() only.
   double require = 0;
