@@ -142,7 +142,7 @@ inline void transpose_lanes(double* block, unsigned lanes) {
 
 // Moves the sums of a chunk to the matrix and leaves zeros.
 inline void flush_sums(double* sums, const ChunkBlocks& blocks, double* values) {
-  constexpr int kAhead = 16;
+  constexpr int kAhead = 64;
   for (int i = 0; i < blocks.count; ++i, sums += kSumDoubles) {
     if (i + kAhead < blocks.count) {
       const double* ahead = values + blocks.offset[i + kAhead];
