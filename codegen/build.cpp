@@ -55,7 +55,7 @@ std::string compiler_identity(const std::string& compiler) {
   return "";
 }
 
-std::vector<std::string> compiler_flags(int lanes) {
+std::vector<std::string> compiler_flags(VectorType type) {
   std::vector<std::string> flags = {"-O1",
                                     "-w",
                                     "-fno-math-errno",
@@ -67,21 +67,21 @@ std::vector<std::string> compiler_flags(int lanes) {
                                     "-fPIC",
                                     "-shared"};
 #if defined(__x86_64__)
-  if (lanes == 4) flags.push_back("-march=x86-64-v3");
-  if (lanes == 8) flags.push_back("-march=x86-64-v4");
-  if (lanes > 1) flags.push_back("-lmvec");
+  if (type.bytes() == 32) flags.push_back("-march=x86-64-v3");
+  if (type.bytes() == 64) flags.push_back("-march=x86-64-v4");
+  if (type.lanes > 1) flags.push_back("-lmvec");
 #endif
   flags.push_back("-lm");
   return flags;
 }
 
-void build_library(const std::string& compiler, int lanes, const std::filesystem::path& source,
+void build_library(const std::string& compiler, VectorType type, const std::filesystem::path& source,
                    const std::filesystem::path& library) {
   std::filesystem::path messages = library;
   messages += ".log";
   // The source goes before the libraries it needs.
   std::vector<std::string> words = {compiler, source.string(), "-o", library.string()};
-  for (const std::string& f : compiler_flags(lanes)) words.push_back(f);
+  for (const std::string& f : compiler_flags(type)) words.push_back(f);
   std::vector<char*> arguments;
   for (std::string& w : words) arguments.push_back(w.data());
   arguments.push_back(nullptr);

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "codegen/vector_type.h"
+
 namespace ergon {
 
 // No compiler, or one that refused the source; what() says which and what to do.
@@ -23,10 +25,10 @@ std::string compiler_identity(const std::string& compiler);
 
 // The command line after the compiler's name. -O1: straight-line code of this kind compiles in less time and runs
 // faster than at -O2, whose scheduling lengthens live ranges.
-std::vector<std::string> compiler_flags(int lanes);
+std::vector<std::string> compiler_flags(VectorType type);
 
 // Compiles `source` into `library`. Throws BuildError.
-void build_library(const std::string& compiler, int lanes, const std::filesystem::path& source,
+void build_library(const std::string& compiler, VectorType type, const std::filesystem::path& source,
                    const std::filesystem::path& library);
 
 }  // namespace ergon

@@ -128,8 +128,8 @@ void KernelCache::keep_note(const std::string& key, const std::string& text) con
   }
 }
 
-LoadedKernel KernelCache::make(const std::string& key, const std::string& maker, const std::string& source, int lanes,
-                               const std::string& compiler, double* compile_seconds) const {
+LoadedKernel KernelCache::make(const std::string& key, const std::string& maker, const std::string& source,
+                               VectorType type, const std::string& compiler, double* compile_seconds) const {
   const std::string name = name_of(key, maker);
   std::string tried;
   for (const fs::path& folder : folders_) {
@@ -151,7 +151,7 @@ LoadedKernel KernelCache::make(const std::string& key, const std::string& maker,
     } cleanup{text, library};
     write_file(text, source);
     auto start = std::chrono::steady_clock::now();
-    build_library(compiler, lanes, text, library);
+    build_library(compiler, type, text, library);
     if (compile_seconds)
       *compile_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     std::string bytes = read_file(library);

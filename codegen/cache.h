@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "codegen/vector_type.h"
 #include "runtime/kernel.h"
 
 namespace ergon {
@@ -38,7 +39,7 @@ class KernelCache {
 
   // Builds a library from `source` with that key and loads it. Throws BuildError; std::runtime_error when no folder is
   // writable.
-  LoadedKernel make(const std::string& key, const std::string& maker, const std::string& source, int lanes,
+  LoadedKernel make(const std::string& key, const std::string& maker, const std::string& source, VectorType type,
                     const std::string& compiler, double* compile_seconds) const;
 
  private:

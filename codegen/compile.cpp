@@ -22,9 +22,9 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 }
 
 // Everything that determines the library besides the source text.
-std::string cache_key(const std::string& source, const std::string& compiler, int lanes) {
+std::string cache_key(const std::string& source, const std::string& compiler, VectorType type) {
   std::string all = source + '\0' + compiler;
-  for (const std::string& flag : compiler_flags(lanes)) all += '\0' + flag;
+  for (const std::string& flag : compiler_flags(type)) all += '\0' + flag;
   return content_hash(all);
 }
 
@@ -54,7 +54,7 @@ Generated generate(const Energy& energy, const CompileOptions& options) {
   pass("principal", out.times.principal, [&] { find_principal(out.module); });
   pass("schedule", out.times.schedule, [&] { code = schedule(out.module); });
   pass("emit", out.times.emit, [&] {
-    Emitted emitted = emit(out.module, code, options.lanes);
+    Emitted emitted = emit(out.module, code, {options.lanes, options.single});
     out.source = std::move(emitted.source);
     out.counts = emitted.counts;
     out.costs = std::move(emitted.costs);
@@ -67,8 +67,8 @@ PreparedKernel prepare(const Energy& energy, const CompileOptions& options) {
   out.cache = options.cache.empty() ? KernelCache::user_folder() : options.cache;
   out.compiler = options.compiler.empty() ? default_compiler() : options.compiler;
   out.maker = compiler_identity(out.compiler);
-  out.lanes = options.lanes;
-  out.front = front_key(energy, {options.case_name, options.lanes, options.stable, out.compiler});
+  out.type = {options.lanes, options.single};
+  out.front = front_key(energy, {options.case_name, out.type, options.stable, out.compiler});
   const KernelCache given(options.read_only_caches), own({out.cache});
   const auto find = [&](const std::string& key) {
     const auto start = std::chrono::steady_clock::now();
@@ -99,8 +99,7 @@ PreparedKernel prepare(const Energy& energy, const CompileOptions& options) {
   out.kernel.source_bytes = generated.source.size();
   generated.times.load = out.kernel.times.load;
   out.kernel.times = generated.times;
-  out.key = energy.name + "-w" + std::to_string(options.lanes) + "-" +
-            cache_key(generated.source, out.compiler, options.lanes);
+  out.key = key_stem(energy, out.type) + cache_key(generated.source, out.compiler, out.type);
   if (options.use_cached) find(out.key);
   if (out.kernel.cached) own.keep_note(out.front, note_of(out));
   out.source = std::move(generated.source);
@@ -113,7 +112,7 @@ CompiledKernel finish(PreparedKernel prepared) {
   const KernelCache cache({prepared.cache});
   auto start = std::chrono::steady_clock::now();
   const LoadedKernel made =
-      cache.make(prepared.key, prepared.maker, prepared.source, prepared.lanes, prepared.compiler, &times.compile);
+      cache.make(prepared.key, prepared.maker, prepared.source, prepared.type, prepared.compiler, &times.compile);
   times.load += seconds_since(start) - times.compile;
   cache.keep_note(prepared.front, note_of(prepared));
   CompiledKernel out = std::move(prepared.kernel);

@@ -16,7 +16,8 @@ namespace ergon {
 
 struct CompileOptions {
   std::string case_name{};  // one of the energy's cases; "" when it has none
-  int lanes = 1;            // 1, 2, 4 or 8
+  int lanes = 1;            // 1, 2, 4 or 8; of floats 1, 4, 8 or 16
+  bool single = false;      // evaluate in single precision: the kernel's entry points are ErgonSingle
   std::vector<std::filesystem::path>
       read_only_caches{};         // searched first, e.g. the catalogue compiled with the program
   std::filesystem::path cache{};  // "" means KernelCache::user_folder()
@@ -64,7 +65,7 @@ struct PreparedKernel {
   std::string front, key;  // codegen/front_key.h; of the library
   std::string compiler, maker;
   std::filesystem::path cache;
-  int lanes = 1;
+  VectorType type = 1;
 };
 
 // The two halves of compile(): all that is the program's own, and the C++ compiler (which may run in several threads at

@@ -1,6 +1,8 @@
 #include "codegen/emit.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <set>
 
 #include <fmt/format.h>
@@ -46,59 +48,70 @@ std::string quoted(const std::string& text) {
   return out + "\"";
 }
 
-void count_calls(const Program& p, const std::vector<int>& code, std::set<std::string>& used) {
+void count_calls(const Program& p, const std::vector<int>& code, bool scalar, std::set<std::string>& used) {
   for (int i : code) {
-    const char* prefix = p[i].lifetime <= Lifetime::uniform ? "s_" : "v_";
+    const char* prefix = scalar || p[i].lifetime <= Lifetime::uniform ? "s_" : "v_";
     if (p[i].op == Opcode::sqrt) used.insert(std::string(prefix) + "sqrt");
     if (p[i].op == Opcode::call) used.insert(std::string(prefix) + name_of(p[i].call));
   }
 }
 
-std::string entry(const std::string& name, const char* out_parameters, const char* out_vectors,
-                  const std::string& body) {
+// A function of q over lanes; `outputs` are the arrays that it writes.
+std::string entry(const std::string& name, const std::string& real, const std::vector<std::string>& outputs,
+                  const std::string& body, const std::string& first_parameter = "") {
+  std::string parameters, vectors;
+  for (const std::string& output : outputs) {
+    parameters += fmt::format(", {}* {}_", real, output);
+    vectors += fmt::format("  V* {0} = (V*){0}_;\n", output);
+  }
   return fmt::format(
-      "static void {}(const double* q_, const double* e_, const double* u, {}) {{\n"
+      "static void {}(const {}* q_, const {}* e_, const {}* u{}{}) {{\n"
       "  const V* q = (const V*)q_;\n  const V* e = (const V*)e_;\n{}  (void)q, (void)e, (void)u;\n{}}}\n\n",
-      name, out_parameters, out_vectors, body);
+      name, real, real, real, first_parameter, parameters, vectors, body);
 }
 
 // One of the three evaluations: its name, what it writes.
 struct Evaluation {
-  const char* name;
-  const char* parameters;
-  const char* vectors;
-  const char* arguments;
+  std::string name;
+  std::vector<std::string> outputs;
 };
-constexpr Evaluation kEvaluations[] = {
-    {"value", "double* value_, double* require_", "  V* value = (V*)value_;\n  V* require = (V*)require_;\n",
-     "value_, require_"},
-    {"gradient", "double* value_, double* gradient_", "  V* value = (V*)value_;\n  V* gradient = (V*)gradient_;\n",
-     "value_, gradient_"},
-    {"hessian", "double* value_, double* gradient_, double* hessian_",
-     "  V* value = (V*)value_;\n  V* gradient = (V*)gradient_;\n  V* hessian = (V*)hessian_;\n",
-     "value_, gradient_, hessian_"}};
+std::vector<Evaluation> evaluations() {
+  return {{"value", {"value", "require"}},
+          {"gradient", {"value", "gradient"}},
+          {"hessian", {"value", "gradient", "hessian"}}};
+}
 
 // Runs the form that all lanes ask for; where they differ, both, and picks by lane.
-std::string dispatch(const Evaluation& e, const FunctionText& near, int q_size) {
-  const int packed = q_size * (q_size + 1) / 2, sizes[] = {1, q_size, packed};
-  const std::string name = e.name;
-  std::string arrays, far_arguments, picks;
-  auto output = [&](const std::string& array, int size) {
+std::string dispatch(const Evaluation& e, const FunctionText& near, int q_size, bool single) {
+  std::string arrays, arguments, far_arguments, picks;
+  for (const std::string& array : e.outputs) {
+    const int size = array == "gradient" ? q_size : array == "hessian" ? q_size * (q_size + 1) / 2 : 1;
     arrays += fmt::format("  V other_{}[{}];\n", array, size);
-    far_arguments += fmt::format(", (double*)other_{}", array);
-    picks += fmt::format("  for (int i = 0; i < {0}; ++i) {1}[i] = near > 0.0 ? {1}[i] : other_{1}[i];\n", size, array);
-  };
-  output("value", sizes[0]);
-  if (name == "value") output("require", 1);
-  if (name != "value") output("gradient", sizes[1]);
-  if (name == "hessian") output("hessian", sizes[2]);
+    arguments += fmt::format("{}{}_", arguments.empty() ? "" : ", ", array);
+    far_arguments += fmt::format(", ({}*)other_{}", single ? "float" : "double", array);
+    picks += fmt::format("  for (int i = 0; i < {0}; ++i) {1}[i] = near > {2} ? {1}[i] : other_{1}[i];\n", size, array,
+                         literal(0, single));
+  }
   return near.body + fmt::format(
                          "  const int lanes = lanes_above(near);\n"
                          "  if (lanes != 0) {0}_near(q_, e_, u, {1});\n"
                          "  if (lanes == 0) {0}_far(q_, e_, u, {1});\n"
                          "  if (lanes == 0 || lanes == all_lanes) return;\n"
                          "{2}  {0}_far(q_, e_, u{3});\n{4}",
-                         name, e.arguments, arrays, far_arguments, picks);
+                         e.name, arguments, arrays, far_arguments, picks);
+}
+
+// Every number of the code becomes a float that is neither zero nor infinite.
+void check_floats(const Program& p, const Energy& energy) {
+  for (int i = 0; i < p.size(); ++i) {
+    const double number = p[i].constant, size = std::abs(number);
+    if (p[i].op != Opcode::constant || number == 0 || !std::isfinite(number)) continue;
+    if (number > 0 && number < kGuard) continue;
+    if (size >= std::numeric_limits<float>::min() && size <= std::numeric_limits<float>::max()) continue;
+    throw SourceError({energy.file}, fmt::format("{} cannot be evaluated in single precision: no float comes near its "
+                                                 "number {}; use --precision double",
+                                                 energy.name, number));
+  }
 }
 
 std::string input_table(const Module& m) {
@@ -112,8 +125,8 @@ std::string input_table(const Module& m) {
   return out + "  {0, 0, 0, 0, 0}};\n";
 }
 
-std::string kernel_table(const Module& m, const OperationCounts& c, int lanes) {
-  bool density = m.points == 0;
+std::string kernel_table(const Module& m, const OperationCounts& c, VectorType type) {
+  const bool density = m.points == 0, principal = !m.principal.empty(), projected = m.changed >= 0;
   std::string weights;
   for (double w : m.weights) weights += (weights.empty() ? "" : ", ") + literal(w);
   int inputs = 0;
@@ -125,16 +138,21 @@ std::string kernel_table(const Module& m, const OperationCounts& c, int lanes) {
   std::string out = input_table(m);
   if (!density) out += fmt::format("static const double weights[] = {{{}}};\n", weights);
   if (!density) out += fmt::format("static const char* const points[] = {{{}}};\n", points);
+  const std::string entries =
+      "prepare_uniforms, prepare_elements, conditions, value_entry, gradient_entry, hessian_entry";
+  if (type.single)
+    out += fmt::format("static const ErgonSingle single = {{\n  {},\n  {}, {}}};\n", entries,
+                       principal ? "principal_entry" : "0", projected ? "projected_entry" : "0");
   out += fmt::format(
       "extern \"C\" __attribute__((visibility(\"default\"))) const ErgonKernel ergon_kernel = {{\n"
       "  ERGON_KERNEL_ABI, {}, {}, {}, {}, {}, {}, {}, {},\n  {}, inputs, {}, {}, {}, {}, {}, {},\n  {}, {}, {}, {},\n"
-      "  {}, {}, {}, {},\n  prepare_uniforms, prepare_elements, conditions, value_entry, gradient_entry, "
-      "hessian_entry, {},\n  {}, {}, {}, {}}};\n",
-      lanes, quoted(m.energy->name), quoted(m.case_name), quoted(m.energy->geometry), density ? 1 : 0, m.points,
+      "  {}, {}, {}, {},\n  {}, {},\n  {}, {}, {}, {}, {}}};\n",
+      type.lanes, quoted(m.energy->name), quoted(m.case_name), quoted(m.energy->geometry), density ? 1 : 0, m.points,
       m.q_vectors, density ? "0" : "weights", inputs, m.params, m.raw, c.uniforms, c.elements, m.require.size(),
       m.active.size(), int{m.constant_gradient}, int{m.constant_hessian}, int{m.zero_hessian}, int{m.psd_hessian},
-      c.value, c.gradient, c.hessian, c.divisions, density ? "0" : "points", int{m.displacement},
-      m.principal.empty() ? "0" : "principal_entry", c.principal, m.changed >= 0 ? "projected_entry" : "0");
+      c.value, c.gradient, c.hessian, c.divisions, type.single ? "0, 0, 0, 0, 0, 0" : entries, density ? "0" : "points",
+      int{m.displacement}, principal && !type.single ? "principal_entry" : "0", c.principal,
+      projected && !type.single ? "projected_entry" : "0", type.single ? "&single" : "0");
   return out;
 }
 
@@ -150,15 +168,17 @@ std::string header(const Module& m, const OperationCounts& c, const std::vector<
 
 }  // namespace
 
-Emitted emit(const Module& m, const Schedule& s, int lanes) {
+Emitted emit(const Module& m, const Schedule& s, VectorType type) {
   const Program& p = s.program;
+  const std::string real = type.real();
+  if (type.single) check_floats(p, *m.energy);
   Slots slots = assign_slots(s);
   auto text = [&](const std::vector<Output>& outputs) {
-    return function_text(p, slots, outputs, false, true, true, "raw");
+    return function_text(p, slots, outputs, false, true, true, "raw", real);
   };
   // The value entry also gives the smallest margin.
   std::vector<Output> margins;
-  std::string smallest = "  require[0] = __builtin_inf() - V{};\n";
+  std::string smallest = fmt::format("  require[0] = {} - V{{}};\n", literal(HUGE_VAL, type.single));
   for (size_t i = 0; i < s.require.size(); ++i) {
     margins.push_back({fmt::format("const V margin{}", i), s.require[i]});
     smallest += fmt::format("  require[0] = v_min(margin{}, require[0]);\n", i);
@@ -188,7 +208,11 @@ Emitted emit(const Module& m, const Schedule& s, int lanes) {
     c.elements = static_cast<int>(slots.elements.size());
   }
   FunctionText uniforms = function_text(p, slots, outputs_to("u", slots.uniforms), true, false, false, "raw");
-  FunctionText elements = function_text(p, slots, outputs_to("e", slots.elements), false, true, false, "raw");
+  // In single precision what is kept per element is still computed in double: positions at rest lose little then.
+  std::vector<Output> kept = outputs_to("e", slots.elements);
+  if (type.single)
+    for (size_t i = 0; i < kept.size(); ++i) kept[i].target = fmt::format("e[{}]", static_cast<int>(i) * type.lanes);
+  FunctionText elements = function_text(p, slots, kept, type.single, true, false, "raw");
   FunctionText conditions = text(join(outputs_to("active", s.active), outputs_to("require", s.require)));
   FunctionText principal_text = text(outputs_to("blocks", s.principal));
   FunctionText projected_text;
@@ -202,45 +226,51 @@ Emitted emit(const Module& m, const Schedule& s, int lanes) {
   if (two_forms) used.insert("lanes_above");
   std::vector<const FunctionText*> all = {&uniforms, &elements, &conditions, &near, &principal_text, &projected_text};
   for (const FunctionText& t : texts) all.push_back(&t);
-  for (const FunctionText* f : all) count_calls(p, f->instructions, used);
+  for (const FunctionText* f : all)
+    count_calls(p, f->instructions, f == &uniforms || (type.single && f == &elements), used);
 
   Emitted out;
   counts[0].principal = static_cast<int>(principal_text.instructions.size());
   counts[0].projected = static_cast<int>(projected_text.instructions.size());
   out.counts = counts[0];
   out.costs = cost_of_entries(s);
-  out.source = header(m, out.counts, out.costs) + prelude(lanes, used) + kKernelAbiText + "\n";
-  out.source += fmt::format(
-      "static void prepare_uniforms(const double* params, double* u) {{\n  (void)params, (void)u;\n{}}}\n\n",
-      uniforms.body);
-  out.source += fmt::format(
-      "static void prepare_elements(const double* raw_, const double* u, double* e_) {{\n"
-      "  const V* raw = (const V*)raw_;\n  V* e = (V*)e_;\n  (void)raw, (void)u, (void)e;\n{}}}\n\n",
-      elements.body);
-  out.source += entry("conditions", "double* active_, double* require_",
-                      "  V* active = (V*)active_;\n  V* require = (V*)require_;\n  (void)active, (void)require;\n",
-                      conditions.body);
+  out.source = header(m, out.counts, out.costs) + prelude(type, used) + kKernelAbiText + "\n";
+  out.source +=
+      fmt::format("static void prepare_uniforms(const double* params, {}* u) {{\n  (void)params, (void)u;\n{}}}\n\n",
+                  real, uniforms.body);
+  if (type.single) {
+    out.source += fmt::format(
+        "struct OneLane {{\n  const double* first;\n  double operator[](int i) const {{ return first[i*{0}]; }}\n}};\n"
+        "static void prepare_elements(const double* raw_, const float* u, float* e_) {{\n"
+        "  for (int lane = 0; lane < {0}; ++lane) {{\n  const OneLane raw = {{raw_ + lane}};\n"
+        "  float* e = e_ + lane;\n  (void)raw, (void)u, (void)e;\n{1}  }}\n}}\n\n",
+        type.lanes, elements.body);
+  } else {
+    out.source += fmt::format(
+        "static void prepare_elements(const double* raw_, const double* u, double* e_) {{\n"
+        "  const V* raw = (const V*)raw_;\n  V* e = (V*)e_;\n  (void)raw, (void)u, (void)e;\n{}}}\n\n",
+        elements.body);
+  }
+  out.source += entry("conditions", real, {"active", "require"}, "  (void)active, (void)require;\n" + conditions.body);
+  const std::vector<Evaluation> all_evaluations = evaluations();
   for (size_t i = 0; i < 3; ++i) {
-    const Evaluation& e = kEvaluations[i];
-    const std::string name = e.name;
-    out.source += entry(name + (two_forms ? "_near" : "_entry"), e.parameters, e.vectors, texts[i].body);
+    const Evaluation& e = all_evaluations[i];
+    out.source += entry(e.name + (two_forms ? "_near" : "_entry"), real, e.outputs, texts[i].body);
     if (!two_forms) continue;
-    out.source += entry(name + "_far", e.parameters, e.vectors, texts[3 + i].body);
-    out.source += entry(name + "_entry", e.parameters, e.vectors, dispatch(e, near, m.q_size()));
+    out.source += entry(e.name + "_far", real, e.outputs, texts[3 + i].body);
+    out.source += entry(e.name + "_entry", real, e.outputs, dispatch(e, near, m.q_size(), type.single));
   }
   if (!m.principal.empty())
     out.source += fmt::format(
-        "static void principal_entry(const double* s_, const double* e_, const double* u, double* blocks_) {{\n"
+        "static void principal_entry(const {0}* s_, const {0}* e_, const {0}* u, {0}* blocks_) {{\n"
         "  const V* s = (const V*)s_;\n  const V* e = (const V*)e_;\n  V* blocks = (V*)blocks_;\n"
-        "  (void)s, (void)e, (void)u;\n{}}}\n\n",
-        principal_text.body);
+        "  (void)s, (void)e, (void)u;\n{1}}}\n\n",
+        real, principal_text.body);
   if (s.changed >= 0)
-    out.source += entry(
-        "projected_entry", "double negative_, double* value_, double* gradient_, double* projected_, double* changed_",
-        "  const V negative = negative_ - V{};\n  V* value = (V*)value_;\n  V* gradient = (V*)gradient_;\n"
-        "  V* projected = (V*)projected_;\n  V* changed = (V*)changed_;\n",
-        projected_text.body);
-  out.source += kernel_table(m, counts[0], lanes);
+    out.source +=
+        entry("projected_entry", real, {"value", "gradient", "projected", "changed"},
+              "  const V negative = negative_ - V{};\n" + projected_text.body, fmt::format(", {} negative_", real));
+  out.source += kernel_table(m, counts[0], type);
   return out;
 }
 

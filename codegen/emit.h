@@ -7,6 +7,7 @@
 #include "codegen/cost.h"
 #include "codegen/module.h"
 #include "codegen/schedule.h"
+#include "codegen/vector_type.h"
 
 namespace ergon {
 
@@ -30,7 +31,8 @@ struct Emitted {
   std::vector<EntryCost> costs;  // as the head of the source tells them
 };
 
-// The entry points of runtime/kernel.h for vectors of `lanes` doubles (1, 2, 4 or 8).
-Emitted emit(const Module& module, const Schedule& schedule, int lanes);
+// The entry points of runtime/kernel.h for vectors of that type. Throws SourceError for a number in the energy that no
+// float comes near.
+Emitted emit(const Module& module, const Schedule& schedule, VectorType type);
 
 }  // namespace ergon

@@ -54,8 +54,8 @@ class Bytes {
     add(cases), add(active), add(require), add(value), add(int{fixed_frame}), add(text);
   }
   void add(const FrontOptions& options) {
-    const auto& [case_name, lanes, stable, compiler] = options;
-    add(case_name), add(lanes), add(int{stable}), add(compiler);
+    const auto& [case_name, type, stable, compiler] = options;
+    add(case_name), add(type.lanes), add(int{type.single}), add(int{stable}), add(compiler);
   }
   const std::string& all() const { return all_; }
 
@@ -70,7 +70,11 @@ std::string front_key(const Energy& energy, const FrontOptions& options, std::st
   bytes.add(program);
   bytes.add(options);
   bytes.add(energy);
-  return fmt::format("{}-w{}-{}", energy.name, options.lanes, content_hash(bytes.all()));
+  return key_stem(energy, options.type) + content_hash(bytes.all());
+}
+
+std::string key_stem(const Energy& energy, VectorType type) {
+  return fmt::format("{}-{}{}-", energy.name, type.single ? 'f' : 'w', type.lanes);
 }
 
 std::string to_text(const KernelNote& note, const std::string& front) {

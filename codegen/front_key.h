@@ -9,13 +9,14 @@
 
 #include "codegen/emit.h"
 #include "codegen/program_identity.h"
+#include "codegen/vector_type.h"
 #include "symbolic/energy.h"
 
 namespace ergon {
 
 struct FrontOptions {
   std::string case_name{};
-  int lanes = 1;
+  VectorType type = 1;
   bool stable = true;
   std::string compiler{};
 };
@@ -33,5 +34,8 @@ struct KernelNote {
 std::string to_text(const KernelNote& note, const std::string& front);
 // Nothing when the text is not a note of that front key.
 std::optional<KernelNote> note_from(const std::string& text, const std::string& front);
+
+// "spring-w8-" of doubles, "spring-f16-" of floats: how keys begin.
+std::string key_stem(const Energy& energy, VectorType type);
 
 }  // namespace ergon

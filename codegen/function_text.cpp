@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -21,8 +22,15 @@ struct Text {
 
 class Writer {
  public:
-  Writer(const Program& p, const Slots& slots, bool scalar, bool read_uniforms, bool read_elements)
-      : p_(p), slots_(slots), scalar_(scalar), read_uniforms_(read_uniforms), read_elements_(read_elements) {}
+  Writer(const Program& p, const Slots& slots, bool scalar, bool read_uniforms, bool read_elements,
+         const std::string& real)
+      : p_(p),
+        slots_(slots),
+        real_(real),
+        scalar_(scalar),
+        single_(real == "float"),
+        read_uniforms_(read_uniforms),
+        read_elements_(read_elements) {}
 
   FunctionText write(const std::vector<Output>& outputs, const std::string& raw_inputs) {
     raw_inputs_ = raw_inputs;
@@ -86,7 +94,7 @@ class Writer {
     if (read_elements_ && slots_.element[k] >= 0) return {fmt::format("e[{}]", slots_.element[k])};
     switch (n.op) {
       case Opcode::constant:
-        return {literal(n.constant), n.constant < 0 ? kUnary : kAtom};
+        return {literal(n.constant, single_), n.constant < 0 ? kUnary : kAtom};
       case Opcode::input: {
         if (n.source == Source::negative) return {"negative"};
         const char* array = n.source == Source::q         ? "q"
@@ -106,11 +114,9 @@ class Writer {
       case Opcode::negate:
         return {"-" + wrapped(n.a, kAtom), kUnary};
       case Opcode::sqrt:
-        return {
-            fmt::format("{}_sqrt({})", scalar_ || n.lifetime <= Lifetime::uniform ? "s" : "v", texts_.at(n.a).text)};
+        return {function_prefix(n) + "sqrt(" + texts_.at(n.a).text + ")"};
       case Opcode::call: {
-        std::string text =
-            fmt::format("{}_{}(", scalar_ || n.lifetime <= Lifetime::uniform ? "s" : "v", name_of(n.call));
+        std::string text = function_prefix(n) + name_of(n.call) + "(";
         text += vector_argument(n.a);
         for (int o : {n.b, n.c})
           if (o >= 0) text += ", " + vector_argument(o);
@@ -118,6 +124,12 @@ class Writer {
       }
     }
     return {};
+  }
+
+  // Functions of one number are those of doubles.
+  std::string function_prefix(const Instruction& n) const {
+    if (!scalar_ && n.lifetime > Lifetime::uniform) return "v_";
+    return single_ ? "(float)s_" : "s_";
   }
 
   void form(int i) {
@@ -131,7 +143,7 @@ class Writer {
       return;
     }
     std::string name = unique(n.name.empty() ? fmt::format("t{}", i) : n.name);
-    const char* type = scalar_ || n.lifetime <= Lifetime::uniform ? "double" : "V";
+    const std::string type = scalar_ || n.lifetime <= Lifetime::uniform ? real_ : "V";
     result_.body += fmt::format("  const {} {} = {};\n", type, name, t.text);
     texts_[i] = {name};
   }
@@ -150,7 +162,8 @@ class Writer {
 
   const Program& p_;
   const Slots& slots_;
-  bool scalar_, read_uniforms_, read_elements_;
+  std::string real_;
+  bool scalar_, single_, read_uniforms_, read_elements_;
   std::string raw_inputs_;
   std::map<int, int> uses_;
   std::map<int, Text> texts_;
@@ -161,15 +174,20 @@ class Writer {
 }  // namespace
 
 FunctionText function_text(const Program& program, const Slots& slots, const std::vector<Output>& outputs, bool scalar,
-                           bool read_uniforms, bool read_elements, const std::string& raw_inputs) {
-  return Writer(program, slots, scalar, read_uniforms, read_elements).write(outputs, raw_inputs);
+                           bool read_uniforms, bool read_elements, const std::string& raw_inputs,
+                           const std::string& real) {
+  return Writer(program, slots, scalar, read_uniforms, read_elements, real).write(outputs, raw_inputs);
 }
 
-std::string literal(double value) {
-  if (std::isinf(value)) return value > 0 ? "__builtin_inf()" : "(-__builtin_inf())";
-  if (std::isnan(value)) return "__builtin_nan(\"\")";
-  std::string text = fmt::format("{}", value);
-  return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+std::string literal(double value, bool single) {
+  const std::string suffix = single ? "f" : "";
+  if (std::isinf(value)) return value > 0 ? "__builtin_inf" + suffix + "()" : "(-__builtin_inf" + suffix + "())";
+  if (std::isnan(value)) return "__builtin_nan" + suffix + "(\"\")";
+  // What keeps a divisor from being zero is the smallest there is.
+  if (single && value > 0 && value < kGuard) value = std::numeric_limits<float>::min();
+  std::string text = single ? fmt::format("{}", static_cast<float>(value)) : fmt::format("{}", value);
+  if (text.find_first_of(".e") == std::string::npos) text += ".0";
+  return text + suffix;
 }
 
 }  // namespace ergon

@@ -20,12 +20,16 @@ struct FunctionText {
 };
 
 // Statements that compute the outputs. Values that `given` has slots for are read from arrays u (uniform) and e
-// (element). Scalars (constant and uniform values) are double, all else is V; in a function of uniforms (`scalar`)
-// everything is double.
+// (element). Scalars (constant and uniform values) are of the type `real`, all else is V; in a function that has no
+// lanes (`scalar`) everything is double.
 FunctionText function_text(const Program& program, const Slots& slots, const std::vector<Output>& outputs, bool scalar,
-                           bool read_uniforms, bool read_elements, const std::string& raw_inputs);
+                           bool read_uniforms, bool read_elements, const std::string& raw_inputs,
+                           const std::string& real = "double");
 
-// A literal that reads back as the same double and is not an integer.
-std::string literal(double value);
+// Positive constants below this are there to keep divisors from being zero.
+constexpr double kGuard = 1e-200;
+
+// A literal that reads back as the same double, or as the nearest float, and is not an integer.
+std::string literal(double value, bool single = false);
 
 }  // namespace ergon

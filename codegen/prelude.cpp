@@ -1,5 +1,6 @@
 #include "codegen/prelude.h"
 
+#include <regex>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -22,16 +23,18 @@ std::string by_comparison(const std::string& type, const std::string& prefix, co
 }
 
 // Bit l is set where lane l is above 0.
-std::string lanes_above(int lanes) {
-  if (lanes == 1) return "enum { all_lanes = 1 };\nstatic inline int lanes_above(V a) { return a > 0.0; }\n";
-  std::string builtin = lanes == 8   ? "__builtin_ia32_cmppd512_mask(a, V{}, 14, -1, 4)"
-                        : lanes == 4 ? "__builtin_ia32_movmskpd256((V)(a > 0.0))"
-                                     : "__builtin_ia32_movmskpd((V)(a > 0.0))";
+std::string lanes_above(VectorType v) {
+  if (v.lanes == 1) return "enum { all_lanes = 1 };\nstatic inline int lanes_above(V a) { return a > 0.0; }\n";
+  const char kind = v.single ? 's' : 'd';
+  const std::string builtin =
+      v.bytes() == 64 ? fmt::format("({})__builtin_ia32_cmpp{}512_mask(a, V{{}}, 14, -1, 4)",
+                                    v.single ? "unsigned short" : "unsigned char", kind)
+                      : fmt::format("__builtin_ia32_movmskp{}{}((V)(a > 0.0))", kind, v.bytes() == 32 ? "256" : "");
   return fmt::format(
       "enum {{ all_lanes = {} }};\nstatic inline int lanes_above(V a) {{\n"
       "#if defined(__x86_64__) && !defined(__clang__)\n  return {};\n#else\n  int bits = 0;\n"
       "  for (int i = 0; i < {}; ++i) bits |= (a[i] > 0.0) << i;\n  return bits;\n#endif\n}}\n",
-      (1 << lanes) - 1, lanes == 8 ? "(unsigned char)" + builtin : builtin, lanes);
+      (1 << v.lanes) - 1, builtin, v.lanes);
 }
 
 // log(1 + x) - x and exp(x) - 1 - x: series where x is small; where it is not, the function less x, in which at most
@@ -63,41 +66,50 @@ std::string remainder_function(const std::string& type, const std::string& prefi
 
 std::string scalar_function(const std::string& type, const std::string& prefix, const std::string& name) {
   bool two = name == "pow" || name == "atan2";
-  return fmt::format("static inline {0} {1}{2}({0} a{3}) {{ return __builtin_{2}(a{4}); }}\n", type, prefix, name,
-                     two ? ", " + type + " b" : "", two ? ", b" : "");
+  return fmt::format("static inline {0} {1}{2}({0} a{3}) {{ return __builtin_{2}{5}(a{4}); }}\n", type, prefix, name,
+                     two ? ", " + type + " b" : "", two ? ", b" : "", type == "float" ? "f" : "");
 }
 
-std::string vector_sqrt(int lanes) {
-  std::string builtin = lanes == 8   ? "__builtin_ia32_sqrtpd512_mask(a, a, -1, 4)"
-                        : lanes == 4 ? "__builtin_ia32_sqrtpd256(a)"
-                                     : "__builtin_ia32_sqrtpd(a)";
+std::string vector_sqrt(VectorType v) {
+  const char kind = v.single ? 's' : 'd';
+  const std::string builtin = v.bytes() == 64
+                                  ? fmt::format("__builtin_ia32_sqrtp{}512_mask(a, a, -1, 4)", kind)
+                                  : fmt::format("__builtin_ia32_sqrtp{}{}(a)", kind, v.bytes() == 32 ? "256" : "");
   return fmt::format(
       "static inline V v_sqrt(V a) {{\n#if defined(__x86_64__) && !defined(__clang__)\n  return {};\n#else\n"
-      "  for (int i = 0; i < {}; ++i) a[i] = __builtin_sqrt(a[i]);\n  return a;\n#endif\n}}\n",
-      builtin, lanes);
+      "  for (int i = 0; i < {}; ++i) a[i] = __builtin_sqrt{}(a[i]);\n  return a;\n#endif\n}}\n",
+      builtin, v.lanes, v.single ? "f" : "");
 }
 
-std::string vector_function(int lanes, const std::string& name) {
-  bool two = name == "pow" || name == "atan2";
+std::string vector_function(VectorType v, const std::string& name) {
+  const bool two = name == "pow" || name == "atan2";
+  const std::string function = name + (v.single ? "f" : "");
   return fmt::format(
-      "#if defined(__x86_64__)\nextern \"C\" V _ZGV{0}N{1}{2}_{3}(V{4}) __attribute__((const));\n"
-      "static inline V v_{3}(V a{5}) {{ return _ZGV{0}N{1}{2}_{3}(a{6}); }}\n#else\n"
-      "static inline V v_{3}(V a{5}) {{\n  for (int i = 0; i < {1}; ++i) a[i] = __builtin_{3}(a[i]{7});\n  return "
+      "#if defined(__x86_64__)\nextern \"C\" V _ZGV{0}N{1}{2}_{8}(V{4}) __attribute__((const));\n"
+      "static inline V v_{3}(V a{5}) {{ return _ZGV{0}N{1}{2}_{8}(a{6}); }}\n#else\n"
+      "static inline V v_{3}(V a{5}) {{\n  for (int i = 0; i < {1}; ++i) a[i] = __builtin_{8}(a[i]{7});\n  return "
       "a;\n}}\n#endif\n",
-      lanes == 8   ? "e"
-      : lanes == 4 ? "d"
-                   : "b",
-      lanes, two ? "vv" : "v", name, two ? ", V" : "", two ? ", V b" : "", two ? ", b" : "", two ? ", b[i]" : "");
+      v.bytes() == 64   ? "e"
+      : v.bytes() == 32 ? "d"
+                        : "b",
+      v.lanes, two ? "vv" : "v", name, two ? ", V" : "", two ? ", V b" : "", two ? ", b" : "", two ? ", b[i]" : "",
+      function);
+}
+
+// The same text with its numbers as floats.
+std::string with_floats(const std::string& text) {
+  static const std::regex number(R"(\b[0-9]+\.[0-9]+\b)");
+  return std::regex_replace(text, number, "$&f");
 }
 
 }  // namespace
 
-std::string prelude(int lanes, std::set<std::string> used) {
-  if (lanes != 1 && lanes != 2 && lanes != 4 && lanes != 8)
-    throw std::invalid_argument("prelude: lanes must be 1, 2, 4 or 8");
-  std::string out = lanes == 1
-                        ? "typedef double V;\n"
-                        : fmt::format("typedef double V __attribute__((vector_size({}), may_alias));\n", 8 * lanes);
+std::string prelude(VectorType v, std::set<std::string> used) {
+  if (!v.usable())
+    throw std::invalid_argument("prelude: lanes must be 1, 2, 4 or 8 of doubles, 1, 4, 8 or 16 of floats");
+  std::string out =
+      v.lanes == 1 ? fmt::format("typedef {} V;\n", v.real())
+                   : fmt::format("typedef {} V __attribute__((vector_size({}), may_alias));\n", v.real(), v.bytes());
   for (const char* prefix : {"s_", "v_"}) {
     const std::string p = prefix;
     const bool logarithm = used.count(p + "log1pmx") > 0, exponential = used.count(p + "expm1mx") > 0;
@@ -108,19 +120,17 @@ std::string prelude(int lanes, std::set<std::string> used) {
   // In alphabetical order those that others call come first.
   for (const std::string& function : used) {
     if (function == "lanes_above") {
-      out += lanes_above(lanes);
+      out += v.single ? with_floats(lanes_above(v)) : lanes_above(v);
       continue;
     }
     std::string prefix = function.substr(0, 2), name = function.substr(2);
-    bool one = prefix == "s_" || lanes == 1;
-    std::string type = prefix == "s_" ? "double" : "V";
+    bool one = prefix == "s_" || v.lanes == 1;
+    std::string type = prefix == "s_" ? "double" : v.lanes == 1 ? v.real() : "V";
     std::string text = by_comparison(type, prefix, name);
     if (text.empty() && (name == "log1pmx" || name == "expm1mx")) text = remainder_function(type, prefix, name);
     if (text.empty())
-      text = one              ? scalar_function(type, prefix, name)
-             : name == "sqrt" ? vector_sqrt(lanes)
-                              : vector_function(lanes, name);
-    out += text;
+      text = one ? scalar_function(type, prefix, name) : name == "sqrt" ? vector_sqrt(v) : vector_function(v, name);
+    out += v.single && prefix == "v_" ? with_floats(text) : text;
   }
   return out + "\n";
 }

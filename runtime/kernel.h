@@ -13,7 +13,7 @@
 extern "C" {
 #endif
 
-#define ERGON_KERNEL_ABI 3
+#define ERGON_KERNEL_ABI 4
 
 enum ErgonRole { ERGON_PARAM = 0, ERGON_REST = 1, ERGON_LAG = 2 };
 
@@ -24,6 +24,19 @@ typedef struct ErgonInput {
   int cols;
   int offset; /* first component in `params` (ERGON_PARAM) or in the raw element data (rest and lag) */
 } ErgonInput;
+
+/* Entry points in single precision: as those of ErgonKernel, over floats. Params and raw data stay double. */
+typedef struct ErgonSingle {
+  void (*prepare_uniforms)(const double* params, float* u);
+  void (*prepare_elements)(const double* raw, const float* u, float* e);
+  void (*conditions)(const float* q, const float* e, const float* u, float* active, float* require);
+  void (*value)(const float* q, const float* e, const float* u, float* value, float* require);
+  void (*gradient)(const float* q, const float* e, const float* u, float* value, float* gradient);
+  void (*hessian)(const float* q, const float* e, const float* u, float* value, float* gradient, float* hessian);
+  void (*principal)(const float* s, const float* e, const float* u, float* blocks);
+  void (*projected)(const float* q, const float* e, const float* u, float negative, float* value, float* gradient,
+                    float* hessian, float* changed);
+} ErgonSingle;
 
 typedef struct ErgonKernel {
   int abi;
@@ -81,6 +94,9 @@ typedef struct ErgonKernel {
      replaced by -x*negative (0: clamped, 1: its absolute value). changed[lanes] is positive where there was one. */
   void (*projected)(const double* q, const double* e, const double* u, double negative, double* value, double* gradient,
                     double* hessian, double* changed);
+
+  /* Where this is not 0 the kernel is one in single precision: these are its entry points, and those above are 0. */
+  const ErgonSingle* single;
 } ErgonKernel;
 
 #ifdef __cplusplus

@@ -7,9 +7,13 @@ namespace ergon::lanes {
 
 const LaneOperations& operations_1();
 const LaneOperations& operations_2();
+const LaneOperations& single_operations_1();
+const LaneOperations& single_operations_4();
 #if defined(__x86_64__)
 const LaneOperations& operations_4();
 const LaneOperations& operations_8();
+const LaneOperations& single_operations_8();
+const LaneOperations& single_operations_16();
 #endif
 
 int best_lanes() {
@@ -27,6 +31,8 @@ int best_lanes() {
   return 2;
 }
 
+int best_single_lanes() { return 2 * best_lanes(); }
+
 const LaneOperations& lane_operations(int lanes) {
   if (lanes == 1) return operations_1();
   if (lanes == 2) return operations_2();
@@ -36,6 +42,17 @@ const LaneOperations& lane_operations(int lanes) {
 #endif
   throw std::invalid_argument("kernel built for " + std::to_string(lanes) + " lanes; this machine offers at most " +
                               std::to_string(best_lanes()));
+}
+
+const LaneOperations& single_lane_operations(int lanes) {
+  if (lanes == 1) return single_operations_1();
+  if (lanes == 4) return single_operations_4();
+#if defined(__x86_64__)
+  if (lanes == 8 && best_single_lanes() >= 8) return single_operations_8();
+  if (lanes == 16 && best_single_lanes() >= 16) return single_operations_16();
+#endif
+  throw std::invalid_argument("kernel built for " + std::to_string(lanes) +
+                              " lanes of floats; this machine offers at most " + std::to_string(best_single_lanes()));
 }
 
 }  // namespace ergon::lanes

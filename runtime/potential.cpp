@@ -30,9 +30,10 @@ void Potential::Impl::bind(std::string potential_name, Kernel bound) {
                      kernel->points, kernel->q_vectors, lanes::kMaxPoints, lanes::kMaxVectors));
   }
   lanes = kernel->lanes;
-  lanes::lane_operations(lanes);
+  single() ? lanes::single_lane_operations(lanes) : lanes::lane_operations(lanes);
   params.resize(static_cast<size_t>(kernel->params));
-  uniforms.resize(static_cast<size_t>(kernel->uniforms));
+  (single() ? single_uniforms.resize(static_cast<size_t>(kernel->uniforms))
+            : uniforms.resize(static_cast<size_t>(kernel->uniforms)));
   lag_set.assign(static_cast<size_t>(kernel->n_inputs), 0);
 }
 
@@ -91,7 +92,11 @@ void Potential::Impl::give_params(const Parameters& values) {
 
 void Potential::Impl::prepare() {
   if (params_changed) {
-    if (kernel->uniforms > 0) kernel->prepare_uniforms(params.data(), uniforms.data());
+    if (single()) {
+      kernel->single->prepare_uniforms(params.data(), single_uniforms.data());
+    } else if (kernel->uniforms > 0) {
+      kernel->prepare_uniforms(params.data(), uniforms.data());
+    }
     raw_changed = true;
     params_changed = false;
   }
@@ -108,20 +113,40 @@ void Potential::Impl::prepare() {
   const size_t in = static_cast<size_t>(kernel->raw) * width, out = static_cast<size_t>(kernel->elements) * width;
 #pragma omp parallel for schedule(static) if (count > 4096)
   for (size_t block = 0; block < static_cast<size_t>(blocks()); ++block) {
-    kernel->prepare_elements(raw.data() + block * in, uniforms.data(), elements.data() + block * out);
+    if (single()) {
+      kernel->single->prepare_elements(raw.data() + block * in, single_uniforms.data(),
+                                       single_elements.data() + block * out);
+    } else {
+      kernel->prepare_elements(raw.data() + block * in, uniforms.data(), elements.data() + block * out);
+    }
   }
 }
 
 lanes::Stencils Potential::Impl::view() const {
   const auto or_null = [](const auto& values) { return values.empty() ? nullptr : values.data(); };
-  return {kernel.table,        chunk,           count,          points,
-          quadrature,          vertices.data(), or_null(table), or_null(axis),
-          or_null(axis_nodes), weights.data(),  volumes.data(), elements.data(),
-          uniforms.data(),     nullptr,         nullptr,        combined};
+  return {kernel.table,
+          chunk,
+          count,
+          points,
+          quadrature,
+          vertices.data(),
+          or_null(table),
+          or_null(axis),
+          or_null(axis_nodes),
+          weights.data(),
+          volumes.data(),
+          elements.data(),
+          uniforms.data(),
+          nullptr,
+          nullptr,
+          combined,
+          single_elements.data(),
+          single_uniforms.data()};
 }
 
 void Potential::set_param(const std::string& param, const std::vector<double>& values) {
   impl->give_params({{param, values}});
+  if (impl->curvature) impl->curvature->give_params({{param, values}});
 }
 
 const std::string& Potential::name() const { return impl->name; }

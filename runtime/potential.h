@@ -22,6 +22,9 @@ enum class Projection { clamp, absolute, none };
 struct Kernel {
   std::shared_ptr<void> library;
   const ErgonKernel* table = nullptr;
+  // Where this is set it gives the Hessian, and this kernel only value and gradient: the same energy in single
+  // precision, of more lanes.
+  std::shared_ptr<const Kernel> curvature = nullptr;
   const ErgonKernel* operator->() const { return table; }
 };
 

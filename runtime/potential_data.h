@@ -38,8 +38,12 @@ struct Potential::Impl {
   AlignedVector<double> raw;       // [block][kernel->raw][lanes]
   AlignedVector<double> elements;  // [block][kernel->elements][lanes]
   AlignedVector<double> uniforms;
+  AlignedVector<float> single_elements;  // of a kernel in single precision, in place of these two
+  AlignedVector<float> single_uniforms;
   std::vector<double> params;
   std::vector<char> lag_set;  // per input
+  // The same potential with the kernel that gives its Hessian, where that is not the one that gives value and gradient.
+  std::shared_ptr<Impl> curvature;
 
   bool params_changed = true;  // uniforms and elements are to be prepared
   bool raw_changed = true;     // elements are to be prepared
@@ -80,6 +84,7 @@ struct Potential::Impl {
   void allocate_raw();
   // Writes one value set for all stencils or one per stencil into raw.
   void write_raw(const ErgonInput& input, const std::vector<double>& values, const char* kind);
+  bool single() const { return kernel->single != nullptr; }
   const ErgonInput& input(const std::string& wanted, int role, const char* kind) const;
   // Fills rest data from `rest`, or from X for a rest vector named like a point that is listed.
   void give_rest(const Eigen::Matrix3Xd& X, const StencilData& rest);

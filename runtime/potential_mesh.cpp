@@ -74,6 +74,7 @@ Potential Potential::on_mesh(std::string name, Kernel kernel, const Mesh& mesh, 
                              const Parameters& params, std::optional<int> exactness) {
   Potential potential{std::make_shared<Impl>()};
   Impl& d = *potential.impl;
+  if (kernel.curvature) d.curvature = on_mesh(name, *kernel.curvature, mesh, first_vertex, params, exactness).impl;
   d.bind(std::move(name), std::move(kernel));
   if (!d.kernel->density) d.fail(fmt::format("{} is a stencil energy, not a density", d.kernel->energy));
   const int dimension = dimension_of(mesh.element);

@@ -75,7 +75,8 @@ void Potential::Impl::order_vertices(const std::vector<int>& given, int step, co
 
 void Potential::Impl::allocate_raw() {
   raw.resize(lane_stencil.size() * static_cast<size_t>(kernel->raw));
-  elements.resize(lane_stencil.size() * static_cast<size_t>(kernel->elements));
+  const size_t kept = lane_stencil.size() * static_cast<size_t>(kernel->elements);
+  single() ? single_elements.resize(kept) : elements.resize(kept);
   raw_changed = true;
 }
 
@@ -200,6 +201,8 @@ void Potential::Impl::take_weights(const std::vector<double>& given) {
 Potential Potential::on_stencils(std::string name, Kernel kernel, const std::vector<int>& stencils,
                                  const Eigen::Matrix3Xd& X, const Parameters& params, const StencilData& rest) {
   Potential potential{std::make_shared<Impl>()};
+  if (kernel.curvature)
+    potential.impl->curvature = on_stencils(name, *kernel.curvature, stencils, X, params, rest).impl;
   potential.impl->bind_stencils(std::move(name), std::move(kernel), params);
   potential.impl->list_points(true);
   potential.set_stencils(stencils, X, rest);
@@ -209,6 +212,8 @@ Potential Potential::on_stencils(std::string name, Kernel kernel, const std::vec
 Potential Potential::on_used_points(std::string name, Kernel kernel, const std::vector<int>& stencils,
                                     const Eigen::Matrix3Xd& X, const Parameters& params, const StencilData& rest) {
   Potential potential{std::make_shared<Impl>()};
+  if (kernel.curvature)
+    potential.impl->curvature = on_used_points(name, *kernel.curvature, stencils, X, params, rest).impl;
   potential.impl->bind_stencils(std::move(name), std::move(kernel), params);
   potential.impl->list_points(false);
   potential.set_stencils(stencils, X, rest);
@@ -218,6 +223,7 @@ Potential Potential::on_used_points(std::string name, Kernel kernel, const std::
 Potential Potential::on_combinations(std::string name, Kernel kernel, int points, const Parameters& params) {
   Potential potential{std::make_shared<Impl>()};
   Impl& d = *potential.impl;
+  if (kernel.curvature) d.curvature = on_combinations(name, *kernel.curvature, points, params).impl;
   d.bind_stencils(std::move(name), std::move(kernel), params);
   if (points < 1 || points > lanes::kMaxCombined) {
     d.fail(fmt::format("combinations of {} points; 1 to {} can be evaluated", points, lanes::kMaxCombined));
@@ -235,6 +241,7 @@ void Potential::set_stencils(const std::vector<int>& stencils, const Eigen::Matr
   if (impl->combined) throw std::logic_error("set_stencils: combinations need their weights; use set_combinations");
   impl->take_list(stencils, static_cast<int>(X.cols()));
   impl->give_rest(X, rest);
+  if (impl->curvature) Potential{impl->curvature}.set_stencils(stencils, X, rest);
 }
 
 void Potential::set_combinations(const std::vector<int>& stencils, const std::vector<double>& weights,
@@ -248,6 +255,7 @@ void Potential::set_combinations(const std::vector<int>& stencils, const std::ve
   impl->take_list(stencils, -1);
   impl->take_weights(weights);
   impl->give_rest({}, rest);
+  if (impl->curvature) Potential{impl->curvature}.set_combinations(stencils, weights, rest);
 }
 
 void Potential::set_lag(const std::string& lag, const std::vector<double>& values) {
@@ -255,6 +263,7 @@ void Potential::set_lag(const std::string& lag, const std::vector<double>& value
   impl->write_raw(target, values, "lag");
   impl->lag_set[static_cast<size_t>(&target - impl->kernel->inputs)] = 1;
   ++impl->lag_version;
+  if (impl->curvature) Potential{impl->curvature}.set_lag(lag, values);
 }
 
 }  // namespace ergon

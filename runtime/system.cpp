@@ -40,8 +40,8 @@ System::System(int vertices) : impl(std::make_shared<Impl>()) {
 int System::vertices() const { return impl->vertices; }
 int System::free_vertices() const { return impl->free_vertices; }
 int System::block_of(int vertex) const { return impl->block_of[static_cast<size_t>(vertex)]; }
-Potential& System::potential(int index) { return impl->terms[static_cast<size_t>(index)].potential; }
-int System::potential_count() const { return static_cast<int>(impl->terms.size()); }
+Potential& System::potential(int index) { return impl->terms[impl->first_terms[static_cast<size_t>(index)]].potential; }
+int System::potential_count() const { return static_cast<int>(impl->first_terms.size()); }
 
 void System::set_fixed(const std::vector<char>& fixed) {
   if (fixed.size() != static_cast<size_t>(impl->vertices)) {
@@ -56,12 +56,22 @@ void System::set_fixed(const std::vector<char>& fixed) {
 }
 
 int System::add(Potential potential) {
-  impl->terms.emplace_back(std::move(potential));
-  SystemTerm& term = impl->terms.back();
-  term.operations = &lanes::lane_operations(term.data().lanes);
-  impl->find_configuration(term);
-  term.check(impl->vertices);
+  const std::shared_ptr<Potential::Impl> curvature = potential.impl->curvature;
+  impl->first_terms.push_back(impl->terms.size());
+  impl->add_term(std::move(potential), true, curvature == nullptr);
+  if (curvature) impl->add_term(Potential{curvature}, false, true);
   return potential_count() - 1;
+}
+
+void System::Impl::add_term(Potential potential, bool gives_gradient, bool gives_hessian) {
+  terms.emplace_back(std::move(potential));
+  SystemTerm& term = terms.back();
+  term.gives_gradient = gives_gradient;
+  term.gives_hessian = gives_hessian;
+  const int width = term.data().lanes;
+  term.operations = term.data().single() ? &lanes::single_lane_operations(width) : &lanes::lane_operations(width);
+  find_configuration(term);
+  term.check(vertices);
 }
 
 void System::Impl::prepare(bool coloured) {
@@ -135,7 +145,7 @@ void System::Impl::find_configuration(SystemTerm& term) {
   }
 }
 
-Evaluation System::Impl::sum(bool margins) const {
+Evaluation System::Impl::sum(bool margins, bool hessians) const {
   Evaluation evaluation;
   evaluation.require = kInfinity;
   for (const SystemTerm& term : terms) {
@@ -143,8 +153,9 @@ Evaluation System::Impl::sum(bool margins) const {
     for (const lanes::ChunkResult& chunk : term.results) {
       value += chunk.value;
       require = std::min(require, chunk.require);
-      evaluation.indefinite += chunk.indefinite;
+      evaluation.indefinite += hessians ? chunk.indefinite : 0;
     }
+    if (!term.gives_gradient) continue;
     evaluation.value += value;
     evaluation.by_potential.push_back(value);
     if (margins && require < evaluation.require) {
@@ -161,6 +172,7 @@ Evaluation System::value(const Eigen::Matrix3Xd& x) {
   d.load_positions(x);
 #pragma omp parallel if (d.worth_threads())
   for (SystemTerm& term : d.terms) {
+    if (!term.gives_gradient) continue;
 #pragma omp for schedule(dynamic, 1) nowait
     for (size_t chunk = 0; chunk < term.results.size(); ++chunk) {
       const lanes::BlockRange range = term.range(static_cast<int>(chunk));
@@ -180,6 +192,7 @@ Evaluation System::gradient(const Eigen::Matrix3Xd& x, Eigen::Matrix3Xd& gradien
 #pragma omp for schedule(static)
     for (size_t i = 0; i < d.gradient.size(); ++i) d.gradient[i] = 0;
     for (SystemTerm& term : d.terms) {
+      if (!term.gives_gradient) continue;
       over_colours(term, [&](int chunk) {
         term.operations->gradient(term.stencils, term.range(chunk), d.points_of(term), d.gradient.data(),
                                   &term.results[static_cast<size_t>(chunk)]);
@@ -215,9 +228,9 @@ Evaluation System::hessian(const Eigen::Matrix3Xd& x, Projection projection, Eig
         lanes::ChunkResult* result = &term.results[static_cast<size_t>(chunk)];
         if (term.assembled()) {
           term.operations->hessian(term.stencils, range, term.blocks(chunk), d.points_of(term),
-                                   static_cast<int>(projection), room, d.gradient.data(), matrix.values().data(),
-                                   result);
-        } else {
+                                   static_cast<int>(projection), room,
+                                   term.gives_gradient ? d.gradient.data() : nullptr, matrix.values().data(), result);
+        } else if (term.gives_gradient) {
           term.operations->gradient(term.stencils, range, d.points_of(term), d.gradient.data(), result);
         }
       });
@@ -227,7 +240,7 @@ Evaluation System::hessian(const Eigen::Matrix3Xd& x, Projection projection, Eig
       for (int c = 0; c < 3; ++c) gradient(c, v) = d.gradient[4 * static_cast<size_t>(v) + static_cast<size_t>(c)];
     }
   }
-  Evaluation evaluation = d.sum(false);
+  Evaluation evaluation = d.sum(false, true);
   for (const SystemTerm& term : d.terms) {
     if (term.constant()) evaluation.indefinite += term.indefinite;
   }
@@ -237,6 +250,7 @@ Evaluation System::hessian(const Eigen::Matrix3Xd& x, Projection projection, Eig
 std::vector<std::string> System::skipped() const {
   std::vector<std::string> lines;
   for (const SystemTerm& term : impl->terms) {
+    if (!term.gives_gradient) continue;
     const std::string& name = term.potential.name();
     const ErgonKernel& kernel = term.kernel();
     if (term.potential.stencil_count() == 0) {
@@ -247,8 +261,10 @@ std::vector<std::string> System::skipped() const {
       lines.push_back(name + ": Hessian is constant, assembled once");
     } else if (kernel.psd_hessian) {
       lines.push_back(name + ": Hessian is positive semi-definite, not projected");
-    } else if (kernel.projected != nullptr) {
+    } else if (kernel.projected != nullptr || (kernel.single != nullptr && kernel.single->projected != nullptr)) {
       lines.push_back(name + ": Hessian is projected in closed form, not decomposed");
+    } else if (kernel.principal != nullptr || (kernel.single != nullptr && kernel.single->principal != nullptr)) {
+      lines.push_back(name + ": Hessian is projected in the frame of the singular values, not decomposed");
     }
   }
   return lines;

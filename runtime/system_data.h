@@ -41,6 +41,9 @@ struct SystemTerm {
   explicit SystemTerm(Potential added) : potential(std::move(added)) {}
 
   Potential potential;
+  // A potential whose Hessian is that of a kernel of its own (Kernel::curvature) is two terms.
+  bool gives_gradient = true;
+  bool gives_hessian = true;
   const lanes::LaneOperations* operations = nullptr;
   lanes::Stencils stencils{};
   int configuration = -1;                   // among the system's rest configurations; -1: the kernel is given positions
@@ -56,7 +59,7 @@ struct SystemTerm {
   unsigned long numbered_stencils = 0;  // stencil_version and fixed vertices that the slots are of
   unsigned long numbered_fixed = 0;
   AlignedVector<int> slots;  // lanes::Stencils
-  std::vector<unsigned char> turned;
+  std::vector<unsigned short> turned;
   unsigned long placed_pattern = 0;  // that the chunks' blocks were found in
 
   // A constant Hessian: the versions that the assembled base is made of.
@@ -69,8 +72,9 @@ struct SystemTerm {
   Potential::Impl& data() { return *potential.impl; }
   const Potential::Impl& data() const { return *potential.impl; }
   const ErgonKernel& kernel() const { return *potential.impl->kernel.table; }
-  bool constant() const { return kernel().constant_hessian && !kernel().zero_hessian; }
-  bool assembled() const { return !kernel().constant_hessian && !kernel().zero_hessian; }
+  bool in_matrix() const { return gives_hessian && !kernel().zero_hessian; }
+  bool constant() const { return in_matrix() && kernel().constant_hessian && kernel().single == nullptr; }
+  bool assembled() const { return in_matrix() && !constant(); }
   lanes::BlockRange range(int chunk) const;
   lanes::ChunkBlocks blocks(int chunk) const;
   size_t largest_chunk() const;  // in matrix blocks; what it may be at most where lists change
@@ -96,6 +100,7 @@ struct System::Impl {
   std::vector<int> block_of;
   unsigned long fixed_version = 1;
   std::vector<SystemTerm> terms;
+  std::vector<size_t> first_terms;  // of each potential
 
   // Couplings that a list of stencils no longer has stay in the pattern for a while: they may come back, and a new
   // pattern is a new analysis for the linear solver.
@@ -146,7 +151,8 @@ struct System::Impl {
   // Called by all threads of a team: writes the base and clears what no chunk stores.
   void start_matrix(BlockMatrix& matrix) const;
   bool worth_threads() const;
-  Evaluation sum(bool margins) const;
+  void add_term(Potential potential, bool gives_gradient, bool gives_hessian);
+  Evaluation sum(bool margins, bool hessians = false) const;
 };
 
 }  // namespace ergon

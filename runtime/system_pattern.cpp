@@ -102,7 +102,7 @@ void System::Impl::update_base_pattern() {
 void System::Impl::update_pattern() {
   bool base_changed = false, changed = false;
   for (SystemTerm& term : terms) {
-    if (term.kernel().zero_hessian || !term.number(rooms, block_of, fixed_version)) continue;
+    if (!term.in_matrix() || !term.number(rooms, block_of, fixed_version)) continue;
     (term.constant() ? base_changed : changed) = true;
     term.placed_pattern = 0;
   }
@@ -120,7 +120,7 @@ void System::Impl::update_pattern() {
 void System::Impl::size_rooms() {
   size_t scratch = 0, blocks = 0;
   for (const SystemTerm& term : terms) {
-    if (term.kernel().zero_hessian) continue;
+    if (!term.in_matrix()) continue;
     scratch = std::max(scratch, static_cast<size_t>(term.operations->scratch_size(term.stencils)));
     blocks = std::max(blocks, term.largest_chunk());
   }

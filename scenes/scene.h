@@ -100,6 +100,7 @@ struct SolverSettings : Located {
   int friction_iterations = 2;
   double friction_tolerance = 0.05;  // fraction of the sum of normal forces
   std::string projection = "progressive";
+  std::string precision = "double";
   bool accept_unconverged = false;
 };
 

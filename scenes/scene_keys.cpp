@@ -48,6 +48,11 @@ Section<SolverSettings> solver_section() {
       choice_key("projection", &T::projection, {"clamp", "absolute", "progressive", "none"},
                  "what is done to negative eigenvalues of the Hessian of an element; progressive: nothing until, in a "
                  "time step, the sum has no factor or the direction does not descend, then clamp"),
+      choice_key(
+          "precision", &T::precision, {"double", "float", "mixed"},
+          "of the energies of objects (inertia, constant Hessians and contact are always double); mixed: Hessians "
+          "in float, which takes Newton no more iterations; float: values and gradients too, which do not resolve the "
+          "default tolerance: steps that need more fail, as the energy does not fall any more"),
       integer_key("friction_iterations", &T::friction_iterations, from_1, Need::optional,
                   "most solves per step, each with the normal forces of the one before"),
       number_key("friction_tolerance", &T::friction_tolerance, "1", not_negative, Need::optional,

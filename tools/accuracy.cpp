@@ -14,7 +14,6 @@ namespace ergon {
 namespace {
 
 constexpr int digits = 50;
-constexpr double ulp = 0x1p-53;
 
 // Value, gradient over all coordinates of the dofs, full Hessian: what is compared.
 using Results = std::array<std::vector<double>, 3>;
@@ -40,9 +39,20 @@ double relative_error(const std::vector<double>& a, const std::vector<double>& b
 class Evaluation {
  public:
   Evaluation(const ErgonKernel& kernel, const AccuracyState& state) : k_(kernel) {
+    if (k_.single != nullptr)
+      evaluate<float>(*k_.single, state);
+    else
+      evaluate<double>(k_, state);
+  }
+
+  Results result;
+
+ private:
+  template <class Real, class Entries>
+  void evaluate(const Entries& entries, const AccuracyState& state) {
     const auto width = static_cast<size_t>(k_.lanes);
-    AlignedVector<double> params(static_cast<size_t>(k_.params) + 1), u(static_cast<size_t>(k_.uniforms) + 1),
-        raw(static_cast<size_t>(k_.raw) * width + 8), e(static_cast<size_t>(k_.elements) * width + 8);
+    AlignedVector<double> params(static_cast<size_t>(k_.params) + 1), raw(static_cast<size_t>(k_.raw) * width + 8);
+    AlignedVector<Real> u(static_cast<size_t>(k_.uniforms) + 1), e(static_cast<size_t>(k_.elements) * width + 16);
     for (int i = 0; i < k_.n_inputs; ++i) {
       const ErgonInput& input = k_.inputs[i];
       const std::vector<double>& values = state.inputs.at(input.name);
@@ -54,21 +64,21 @@ class Evaluation {
           std::fill_n(raw.begin() + static_cast<long>(at * width), width, values[c]);
       }
     }
-    k_.prepare_uniforms(params.data(), u.data());
-    k_.prepare_elements(raw.data(), u.data(), e.data());
+    entries.prepare_uniforms(params.data(), u.data());
+    entries.prepare_elements(raw.data(), u.data(), e.data());
 
     const std::vector<double> points = kernel_points(state, k_.displacement != 0);
     const auto n = static_cast<size_t>(k_.density ? k_.q_vectors + 1 : k_.points);
     const auto m = static_cast<size_t>(3 * k_.q_vectors), packed = m * (m + 1) / 2;
-    AlignedVector<double> q(m * width), value(width), gradient(m * width), hessian(packed * width);
+    AlignedVector<Real> q(m * width), value(width), gradient(m * width), hessian(packed * width);
     for (size_t r = 0; r < m; ++r) {
       double sum = 0;
       for (size_t p = 0; p < n; ++p) sum += weight(r / 3, p) * points[3 * p + r % 3];
-      std::fill_n(q.begin() + static_cast<long>(r * width), width, sum);
+      std::fill_n(q.begin() + static_cast<long>(r * width), width, static_cast<Real>(sum));
     }
-    k_.hessian(q.data(), e.data(), u.data(), value.data(), gradient.data(), hessian.data());
+    entries.hessian(q.data(), e.data(), u.data(), value.data(), gradient.data(), hessian.data());
     result[0] = {value[0]};
-    auto h = [&](size_t a, size_t b) {
+    auto h = [&](size_t a, size_t b) -> double {
       return hessian[(std::max(a, b) * (std::max(a, b) + 1) / 2 + std::min(a, b)) * width];
     };
     const size_t dofs = k_.density ? m : 3 * n;
@@ -86,9 +96,6 @@ class Evaluation {
       }
   }
 
-  Results result;
-
- private:
   // Of the point in the 3-vector of q; the gradients of a simplex of the coordinate axes for a density.
   double weight(size_t vector, size_t point) const {
     if (k_.density) return point == 0 ? -1 : point == vector + 1 ? 1 : 0;
@@ -118,8 +125,10 @@ Ulps summary(std::vector<double> errors) {
 
 class Measurement {
  public:
-  Measurement(const Energy& energy, const std::string& case_name, int lanes) : energy_(energy), case_name_(case_name) {
-    CompileOptions options = compile_options(case_name, lanes);
+  Measurement(const Energy& energy, const std::string& case_name, const AccuracyOptions& asked)
+      : energy_(energy), case_name_(case_name), unit_(asked.single ? 0x1p-24 : 0x1p-53) {
+    CompileOptions options = compile_options(case_name, asked.lanes);
+    options.single = asked.single;
     emitted_ = compile(energy, options);
     options.stable = false;
     naive_ = compile(energy, options);
@@ -131,8 +140,8 @@ class Measurement {
     const std::array<double, 3> condition = condition_of(state, exact, random);
     const Evaluation naive(*naive_.table, state), emitted(*emitted_.table, state);
     for (size_t i = 0; i < 3; ++i) {
-      naive_errors_[i].push_back(relative_error(naive.result[i], exact.result[i]) / ulp);
-      emitted_errors_[i].push_back(relative_error(emitted.result[i], exact.result[i]) / ulp);
+      naive_errors_[i].push_back(relative_error(naive.result[i], exact.result[i]) / unit_);
+      emitted_errors_[i].push_back(relative_error(emitted.result[i], exact.result[i]) / unit_);
       out_.condition[i] = std::max(out_.condition[i], condition[i]);
       out_.excess[i] = std::max(out_.excess[i], emitted_errors_[i].back() / (1 + condition[i]));
     }
@@ -179,6 +188,7 @@ class Measurement {
  private:
   const Energy& energy_;
   const std::string& case_name_;
+  double unit_;
   CompiledKernel emitted_, naive_;
   Accuracy out_;
   std::vector<double> naive_errors_[3], emitted_errors_[3];
@@ -188,7 +198,7 @@ class Measurement {
 
 std::vector<Accuracy> measure_accuracy(const Energy& energy, const std::string& case_name,
                                        const AccuracyOptions& options) {
-  Measurement measurement(energy, case_name, options.lanes);
+  Measurement measurement(energy, case_name, options);
   std::mt19937_64 random(1);
   std::vector<Accuracy> out;
   const int first = static_cast<int>(std::lround(std::log10(options.smallest)));

@@ -9,7 +9,8 @@
 
 namespace ergon {
 
-// Errors in units of 2^-53 relative to the exact result; of gradients and Hessians in the norm of all their entries.
+// Errors in units of 2^-53, in single precision 2^-24, relative to the exact result; of gradients and Hessians in the
+// norm of all their entries.
 struct Ulps {
   double median = 0, largest = 0;
 };
@@ -31,6 +32,7 @@ struct AccuracyOptions {
   double smallest = 1e-12, largest = 1e3;  // strains, one per decade
   int directions = 12;                     // states per strain
   int lanes = 1;
+  bool single = false;  // of the kernel in single precision, which is given the state in doubles
 };
 
 // One entry for each strain at which a state was found. Throws SourceError and BuildError.

@@ -14,6 +14,7 @@ struct BenchKernels {
   std::string element;                // "": one that fits each density
   std::string entry;                  // value, gradient, hessian; "": all three
   std::string projection = "clamp";
+  std::string precision = "double";
   std::vector<std::string> set;  // inputs by NAME=VALUE; the others are chosen within their ranges
   int lanes = 0;                 // 0: as many as this machine has
   int threads = 1;

@@ -70,12 +70,14 @@ void bench_case(const Energy& energy, const std::string& case_name, const BenchK
   if (!options.entry.empty()) chosen("--entry", options.entry, entries);
   const Projection projection = projection_named(options.projection);
   const bool density = energy.kind == Energy::Kind::density;
-  const Kernel kernel = load_kernel(energy, case_name, options.lanes == 0 ? lanes::best_lanes() : options.lanes);
-  const Values values = usable_values(energy, kernel, options.element, read_assignments(energy, options.set));
+  const int lanes = options.lanes == 0 ? lanes::best_lanes() : options.lanes;
+  const Precision precision = precision_named(options.precision);
+  const Kernel exact = load_kernel(energy, case_name, lanes), kernel = load_kernel(energy, case_name, lanes, precision);
+  const Values values = usable_values(energy, exact, options.element, read_assignments(energy, options.set));
   auto [mesh, stencils] = sample_of(energy, options.element, options.cells);
   const double cell = 1.0 / options.cells;
   const Eigen::Matrix3Xd x = displaced(mesh.X, cell, 0.15 * cell);
-  if (kernel->actives > 0) stencils = active_stencils(energy, kernel, mesh, stencils, values, x);
+  if (kernel->actives > 0) stencils = active_stencils(energy, exact, mesh, stencils, values, x);
   System system = make_system(energy, kernel, mesh, stencils, values);
   Eigen::Matrix3Xd gradient;
   BlockMatrix hessian;
@@ -93,7 +95,7 @@ void bench_case(const Energy& energy, const std::string& case_name, const BenchK
     } else {
       seconds = median_seconds([&] { system.hessian(x, projection, gradient, hessian); });
       // A principal form is evaluated beside the gradient, in place of the Hessian.
-      const bool principal = projection != Projection::none && kernel->principal != nullptr;
+      const bool principal = projection != Projection::none && exact->principal != nullptr;
       operations = principal ? kernel->operations_gradient + kernel->operations_principal : kernel->operations_hessian;
     }
     const Potential& potential = system.potential(0);
@@ -102,8 +104,8 @@ void bench_case(const Energy& energy, const std::string& case_name, const BenchK
               {"element", density ? name_of(mesh.element) : energy.geometry},
               {"entry", entry},
               {"projection", entry == "hessian" ? options.projection : "none"},
-              {"lanes", kernel->lanes},
-              {"precision", "double"},
+              {"lanes", entry == "hessian" && kernel.curvature ? kernel.curvature->table->lanes : kernel->lanes},
+              {"precision", options.precision},
               {"threads", options.threads},
               {"elements", elements},
               {"ns_per_element", seconds * 1e9 / elements},

@@ -23,6 +23,11 @@ Projection projection_named(const std::string& name) {
   return kinds[chosen("--project", name, {"clamp", "abs", "none"})];
 }
 
+Precision precision_named(const std::string& name) {
+  const std::array kinds = {Precision::double_, Precision::single, Precision::mixed};
+  return kinds[chosen("--precision", name, {"double", "float", "mixed"})];
+}
+
 void set_threads(int threads) {
   if (threads < 1) throw InputError(fmt::format("--threads: {} is below 1", threads));
   omp_set_num_threads(threads);

@@ -6,11 +6,15 @@
 #include <vector>
 
 #include "runtime/potential.h"
+#include "tools/installation.h"
 
 namespace ergon {
 
 // clamp, abs, none. Throws InputError naming the nearest.
 Projection projection_named(const std::string& name);
+
+// double, float, mixed. Throws InputError naming the nearest.
+Precision precision_named(const std::string& name);
 
 // Of this process, for all that runs in parallel. Throws InputError below 1.
 void set_threads(int threads);

@@ -5,6 +5,7 @@
 
 #include "runtime/lanes/lanes.h"
 #include "tools/accuracy.h"
+#include "tools/choices.h"
 #include "tools/command.h"
 #include "tools/installation.h"
 #include "tools/rows.h"
@@ -12,13 +13,14 @@
 namespace ergon {
 namespace {
 
-int accuracy(const std::string& name, bool json, std::ostream& out) {
+int accuracy(const std::string& name, bool single, bool json, std::ostream& out) {
   const Energy energy = find_energy(name);
   Rows rows(out, json);
   constexpr const char* entries[] = {"value", "gradient", "hessian"};
   for (const std::string& case_name : cases_of(energy)) {
     AccuracyOptions options;
-    options.lanes = lanes::best_lanes();
+    options.lanes = single ? lanes::best_single_lanes() : lanes::best_lanes();
+    options.single = single;
     for (const Accuracy& at : measure_accuracy(energy, case_name, options))
       for (int i = 0; i < 3; ++i)
         rows.add({{"energy", case_name.empty() ? energy.name : energy.name + "/" + case_name},
@@ -43,8 +45,13 @@ void add_accuracy_command(CLI::App& app, Run& run) {
   auto json = std::make_shared<bool>(false);
   command->add_option("energy", *name, "an .energy file, or a name in the catalogue")->required();
   command->add_flag("--json", *json, "one JSON object per line instead of a table");
-  command->callback(
-      [name, json, &run] { run = [name, json](std::ostream& out) { return accuracy(*name, *json, out); }; });
+  auto precision = std::make_shared<std::string>("double");
+  command->add_option("--precision", *precision, "of the kernel: double or float");
+  command->callback([name, json, precision, &run] {
+    run = [name, json, precision](std::ostream& out) {
+      return accuracy(*name, chosen("--precision", *precision, {"double", "float"}) == 1, *json, out);
+    };
+  });
 }
 
 }  // namespace ergon

@@ -26,6 +26,7 @@ void add_kernels(CLI::App& bench, Run& run) {
   command->add_option("--project", options->projection, "negative eigenvalues: clamp, abs or none");
   command->add_option("--set", options->set, "NAME=VALUE of an input; the others are chosen within their ranges")
       ->take_all();
+  command->add_option("--precision", options->precision, "double, float, or mixed: floats for the Hessian alone");
   command->add_option("--lanes", options->lanes,
                       "elements at a time: 1, 2, 4 or 8; default: the most this machine has");
   command->add_option("--threads", options->threads, "threads to use");

@@ -16,7 +16,7 @@ namespace ergon {
 namespace {
 
 struct Options {
-  std::string energy, catalogue, dump;
+  std::string energy, catalogue, dump, precision = "double";
 };
 
 const std::vector<std::string> passes = {"lower",     "rest",      "frontier", "differentiate",
@@ -26,7 +26,9 @@ int compile_one(const Options& asked, std::ostream& out) {
   if (!asked.dump.empty()) chosen("--dump", asked.dump, passes);
   const Energy energy = find_energy(asked.energy);
   for (const std::string& case_name : cases_of(energy)) {
-    CompileOptions options = compile_options(case_name, lanes::best_lanes());
+    const bool single = chosen("--precision", asked.precision, {"double", "float"}) == 1;
+    const int lanes = single ? lanes::best_single_lanes() : lanes::best_lanes();
+    CompileOptions options = compile_options(case_name, lanes, single);
     if (!asked.dump.empty()) {
       options.dump = [&](const std::string& pass, const std::string& text) {
         if (pass == asked.dump) out << text;
@@ -36,10 +38,10 @@ int compile_one(const Options& asked, std::ostream& out) {
     }
     const CompiledKernel kernel = compile(energy, options);
     out << fmt::format(
-        "{}{}{}: {} lanes; operations: value {}, gradient {}, hessian {} ({} divisions); {} in {:.2f} s\n", energy.name,
-        case_name.empty() ? "" : "/", case_name, options.lanes, kernel.counts.value, kernel.counts.gradient,
-        kernel.counts.hessian, kernel.counts.divisions, kernel.cached ? "cached, checked" : "compiled",
-        kernel.times.total());
+        "{}{}{}: {} lanes{}; operations: value {}, gradient {}, hessian {} ({} divisions); {} in {:.2f} s\n",
+        energy.name, case_name.empty() ? "" : "/", case_name, options.lanes, single ? " of floats" : "",
+        kernel.counts.value, kernel.counts.gradient, kernel.counts.hessian, kernel.counts.divisions,
+        kernel.cached ? "cached, checked" : "compiled", kernel.times.total());
   }
   return exit_done;
 }
@@ -76,6 +78,9 @@ void add_compile_command(CLI::App& app, Run& run) {
   command
       ->add_option("--dump", options->dump,
                    "print the graph after a pass: " + fmt::format("{}", fmt::join(passes, ", ")))
+      ->excludes(catalogue);
+  command
+      ->add_option("--precision", options->precision, "of the kernel: double or float; the catalogue is made in double")
       ->excludes(catalogue);
   energy->excludes(catalogue);
   command->callback([options, &run] {

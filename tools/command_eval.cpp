@@ -26,7 +26,8 @@ namespace ergon {
 namespace {
 
 struct Options {
-  std::string energy, case_name, mesh, positions, projection = "clamp", gradient_file, hessian_file;
+  std::string energy, case_name, mesh, positions, projection = "clamp", precision = "double", gradient_file,
+                                                  hessian_file;
   std::vector<std::string> set;
   int threads = 1;
   bool json = false;
@@ -89,11 +90,13 @@ int eval(const Options& options, std::ostream& out) {
   const Eigen::Matrix3Xd x = options.positions.empty() ? mesh.X : read_positions(options.positions, mesh.vertices());
   set_threads(options.threads);
 
-  const Kernel kernel = load_kernel(energy, case_name, lanes::best_lanes());
+  const Precision precision = precision_named(options.precision);
+  const Kernel exact = load_kernel(energy, case_name, lanes::best_lanes());
+  const Kernel kernel = load_kernel(energy, case_name, lanes::best_lanes(), precision);
   const bool density = energy.kind == Energy::Kind::density;
   const std::vector<int> stencils =
       density ? std::vector<int>()
-              : active_stencils(energy, kernel, mesh, stencils_on_mesh(energy.geometry, mesh), values, x);
+              : active_stencils(energy, exact, mesh, stencils_on_mesh(energy.geometry, mesh), values, x);
   System system = make_system(energy, kernel, mesh, stencils, values);
   const Evaluation state = system.value(x);
   if (!(state.require > 0) || !std::isfinite(state.value)) {
@@ -130,6 +133,7 @@ void add_eval_command(CLI::App& app, Run& run) {
       ->take_all();
   command->add_option("--case", options->case_name, "case of the energy, when it has several");
   command->add_option("--project", options->projection, "negative eigenvalues: clamp, abs or none");
+  command->add_option("--precision", options->precision, "double, float, or mixed: floats for the Hessian alone");
   command->add_option("--gradient", options->gradient_file, "Matrix Market file to write");
   command->add_option("--hessian", options->hessian_file, "Matrix Market file to write");
   command->add_option("--threads", options->threads, "threads to use");

@@ -43,26 +43,57 @@ std::vector<std::string> cases_of(const Energy& energy, const std::string& asked
   return {energy.cases[chosen("--case", asked, energy.cases)]};
 }
 
-CompileOptions compile_options(const std::string& case_name, int lanes) {
+CompileOptions compile_options(const std::string& case_name, int lanes, bool single) {
   CompileOptions options;
   options.case_name = case_name;
   options.lanes = lanes;
+  options.single = single;
   std::error_code error;
   options.read_only_caches = {std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / "kernels"};
   return options;
 }
 
-Kernel load_kernel(const Energy& energy, const std::string& case_name, int lanes) {
-  const CompiledKernel compiled = compile(energy, compile_options(case_name, lanes));
-  return {compiled.library, compiled.table};
+Kernel load_kernel(const Energy& energy, const std::string& case_name, int lanes, Precision precision) {
+  const auto load = [&](bool single) -> Kernel {
+    const int count = single && lanes > 1 ? 2 * lanes : lanes;
+    const CompiledKernel compiled = compile(energy, compile_options(case_name, count, single));
+    return {compiled.library, compiled.table};
+  };
+  if (precision == Precision::single) return load(true);
+  Kernel kernel = load(false);
+  if (precision == Precision::mixed && !kernel->constant_hessian) {
+    kernel.curvature = std::make_shared<const Kernel>(load(true));
+  }
+  return kernel;
 }
 
-std::vector<Kernel> load_kernels(const std::vector<const Energy*>& energies, int lanes) {
+bool serves_in_floats(const Energy& energy) { return energy.with_role(Role::lag).empty() && energy.active.empty(); }
+
+std::vector<Kernel> load_kernels(const std::vector<const Energy*>& energies, int lanes, Precision precision) {
   std::vector<CompileJob> jobs;
   for (const Energy* energy : energies) jobs.push_back({energy, compile_options("", lanes)});
   std::vector<Kernel> kernels;
   for (const CompiledKernel& compiled : kernels_of(compile_all(jobs)))
     kernels.push_back({compiled.library, compiled.table});
+  if (precision == Precision::double_) return kernels;
+
+  jobs.clear();
+  std::vector<size_t> replaced;
+  for (size_t i = 0; i < kernels.size(); ++i) {
+    if (kernels[i]->constant_hessian || !serves_in_floats(*energies[i])) continue;
+    replaced.push_back(i);
+    jobs.push_back({energies[i], compile_options("", lanes > 1 ? 2 * lanes : 1, true)});
+  }
+  const std::vector<CompiledKernel> singles = kernels_of(compile_all(jobs));
+  for (size_t i = 0; i < replaced.size(); ++i) {
+    Kernel& kernel = kernels[replaced[i]];
+    const Kernel single{singles[i].library, singles[i].table};
+    if (precision == Precision::single) {
+      kernel = single;
+    } else {
+      kernel.curvature = std::make_shared<const Kernel>(single);
+    }
+  }
   return kernels;
 }
 

@@ -27,13 +27,23 @@ std::vector<std::string> catalogue_names();
 // there is no such case.
 std::vector<std::string> cases_of(const Energy& energy, const std::string& asked = "");
 
+// Of value, gradient and Hessian: doubles, floats, or floats for the Hessian alone.
+enum class Precision { double_, single, mixed };
+
 // Options that look for kernels beside the program first.
-CompileOptions compile_options(const std::string& case_name, int lanes);
+CompileOptions compile_options(const std::string& case_name, int lanes, bool single = false);
 
-// Compiled, or from a cache.
-Kernel load_kernel(const Energy& energy, const std::string& case_name, int lanes);
+// Compiled, or from a cache; floats fill vectors as long as those of `lanes` doubles.
+Kernel load_kernel(const Energy& energy, const std::string& case_name, int lanes,
+                   Precision precision = Precision::double_);
 
-// Of energies without cases, in their order; those that no cache holds are compiled side by side.
-std::vector<Kernel> load_kernels(const std::vector<const Energy*>& energies, int lanes);
+// Whether an energy has neither lag data nor active conditions, as inertia and contact do: what a step is accurate to
+// depends on those.
+bool serves_in_floats(const Energy& energy);
+
+// Of energies without cases, in their order; those that no cache holds are compiled side by side. Energies that do not
+// serve in floats, and those whose Hessian is constant, so that floats would save nothing, stay in doubles.
+std::vector<Kernel> load_kernels(const std::vector<const Energy*>& energies, int lanes,
+                                 Precision precision = Precision::double_);
 
 }  // namespace ergon

@@ -9,6 +9,7 @@
 #include "runtime/lanes/lanes.h"
 #include "runtime/output/progress.h"
 #include "scenes/scene_reader.h"
+#include "tools/choices.h"
 #include "tools/installation.h"
 
 namespace ergon {
@@ -59,8 +60,8 @@ RunSummary run_scene_file(const SceneRun& options) {
   run.folder = folder_of(options, scene);
   if (!run.folder.empty()) prepare_output(run.folder);
   const Catalogue catalogue(Catalogue::default_folders());
-  BuiltScene built = build_scene(scene, catalogue, [](const std::vector<const Energy*>& energies) {
-    return load_kernels(energies, lanes::best_lanes());
+  BuiltScene built = build_scene(scene, catalogue, [&](const std::vector<const Energy*>& energies) {
+    return load_kernels(energies, lanes::best_lanes(), precision_named(scene.solver.precision));
   });
   InterruptGuard guard;
   run.stop = [] { return interrupted != 0; };

@@ -9,7 +9,11 @@
 namespace ergon::lanes {
 
 #define ERGON_JOIN(a, b) a##b
+#ifdef ERGON_SINGLE
+#define ERGON_OPERATIONS(width) ERGON_JOIN(single_operations_, width)
+#else
 #define ERGON_OPERATIONS(width) ERGON_JOIN(operations_, width)
+#endif
 const LaneOperations& ERGON_OPERATIONS(ERGON_LANES)();
 
 namespace {
@@ -24,11 +28,11 @@ struct Tally {
   double require = kInfinity;
 
   void add(Real values, int count) {
-    alignas(64) double lane[kWidth];
+    alignas(64) Scalar lane[kWidth];
     store(lane, values);
     for (int l = 0; l < count; ++l) value += lane[l];
   }
-  void limit(const double* margins, int count) {
+  void limit(const Scalar* margins, int count) {
     for (int l = 0; l < count; ++l) {
       if (!(margins[l] >= require)) require = margins[l] == margins[l] ? margins[l] : -kInfinity;
     }
@@ -42,7 +46,7 @@ struct Tally {
 template <class S>
 void value_of(const Stencils& s, BlockRange range, const double* x, ChunkResult* result) {
   Tally tally;
-  alignas(64) double q[S::kSize * kWidth], value[kWidth], margin[kWidth];
+  alignas(64) Scalar q[S::kSize * kWidth], value[kWidth], margin[kWidth];
   Vector3 points[S::kMost];
   for (int block = range.first; block < range.last; ++block) {
     const int count = lanes_of(s, block);
@@ -52,7 +56,7 @@ void value_of(const Stencils& s, BlockRange range, const double* x, ChunkResult*
     for (int p = 0; p < s.quadrature; ++p) {
       const Weights<S> w(s, block, p);
       form_q<S>(s, w, points, q);
-      s.kernel->value(q, data_of(s, block), s.uniforms, value, margin);
+      entries_of(s).value(q, data_of(s, block), uniforms_of(s), value, margin);
       sum += w.times_volume(load(value));
       if (s.kernel->requires_ > 0) tally.limit(margin, count);
     }
@@ -64,7 +68,7 @@ void value_of(const Stencils& s, BlockRange range, const double* x, ChunkResult*
 template <class S>
 void gradient_of(const Stencils& s, BlockRange range, const double* x, double* gradient, ChunkResult* result) {
   Tally tally;
-  alignas(64) double q[S::kSize * kWidth], value[kWidth], by_q[S::kSize * kWidth];
+  alignas(64) Scalar q[S::kSize * kWidth], value[kWidth], by_q[S::kSize * kWidth];
   Vector3 points[S::kMost], by_point[S::kMost];
   const int n = S::points(s);
   for (int block = range.first; block < range.last; ++block) {
@@ -76,7 +80,7 @@ void gradient_of(const Stencils& s, BlockRange range, const double* x, double* g
     for (int p = 0; p < s.quadrature; ++p) {
       const Weights<S> w(s, block, p);
       form_q<S>(s, w, points, q);
-      s.kernel->gradient(q, data_of(s, block), s.uniforms, value, by_q);
+      entries_of(s).gradient(q, data_of(s, block), uniforms_of(s), value, by_q);
       sum += w.times_volume(load(value));
       chain_gradient<S>(s, w, by_q, by_point);
     }
@@ -86,12 +90,12 @@ void gradient_of(const Stencils& s, BlockRange range, const double* x, double* g
   *result = tally.result(0);
 }
 
-// Doubles of q-Hessians that are worked on at a time: they stay in the second-level cache.
-constexpr int kBatchDoubles = 12288;
+// Numbers of q-Hessians that are worked on at a time: they stay in the second-level cache.
+constexpr int kBatch = 98304 / sizeof(Scalar);
 
 template <class S>
 int batch_of(const Stencils& s) {
-  int blocks = kBatchDoubles / (S::kPacked * kWidth * s.quadrature);
+  int blocks = kBatch / (S::kPacked * kWidth * s.quadrature);
   if (blocks * s.quadrature > ProjectionBatch<S::kSize>::kCapacity) {
     blocks = ProjectionBatch<S::kSize>::kCapacity / s.quadrature;
   }
@@ -108,21 +112,22 @@ template <class S>
 void hessian_of(const Stencils& s, BlockRange range, const ChunkBlocks& blocks, const double* x, int projection,
                 const Workspace& room, double* gradient, double* values, ChunkResult* result) {
   Tally tally;
-  alignas(64) double q[S::kSize * kWidth], value[kWidth], by_q[S::kSize * kWidth];
+  alignas(64) Scalar q[S::kSize * kWidth], value[kWidth], by_q[S::kSize * kWidth];
   Vector3 points[S::kMost], by_point[S::kMost];
   const int n = S::points(s), pairs = n * (n + 1) / 2, batch = batch_of<S>(s), size = S::kPacked * kWidth;
-  const bool known = projection != kProjectNone && s.kernel->projected != nullptr;
+  const bool known = projection != kProjectNone && entries_of(s).projected != nullptr;
   const bool project = projection != kProjectNone && !s.kernel->psd_hessian && !known;
-  const bool closed_form = project && s.kernel->principal != nullptr;
+  const bool closed_form = project && entries_of(s).principal != nullptr;
   const Negative mode = projection == kProjectAbsolute ? Negative::absolute : Negative::clamp;
   ProjectionBatch<S::kSize> indefinite(mode);
   const Differences differences = find_differences<S>(s);
-  alignas(64) double replaced[kWidth];
+  alignas(64) Scalar replaced[kWidth];
   long changed = 0;
-  double* element = room.scratch + static_cast<long>(batch) * s.quadrature * size;
+  Scalar* const scratch = reinterpret_cast<Scalar*>(room.scratch);
+  Scalar* element = scratch + static_cast<long>(batch) * s.quadrature * size;
   for (int first = range.first; first < range.last; first += batch) {
     const int last = first + batch < range.last ? first + batch : range.last;
-    double* packed = room.scratch;
+    Scalar* packed = scratch;
     for (int block = first; block < last; ++block) {
       const int count = lanes_of(s, block);
       if (block + kAhead < range.last) prefetch_block<S>(s, block + kAhead);
@@ -133,14 +138,14 @@ void hessian_of(const Stencils& s, BlockRange range, const ChunkBlocks& blocks, 
         const Weights<S> w(s, block, p);
         form_q<S>(s, w, points, q);
         if (known) {
-          const double negative = mode == Negative::absolute ? 1 : 0;
-          s.kernel->projected(q, data_of(s, block), s.uniforms, negative, value, by_q, packed, replaced);
+          const Scalar negative = mode == Negative::absolute ? 1 : 0;
+          entries_of(s).projected(q, data_of(s, block), uniforms_of(s), negative, value, by_q, packed, replaced);
           changed += __builtin_popcount(bits(less(splat(0), load(replaced))) & ((1u << count) - 1));
         } else if (closed_form) {
-          s.kernel->gradient(q, data_of(s, block), s.uniforms, value, by_q);
+          entries_of(s).gradient(q, data_of(s, block), uniforms_of(s), value, by_q);
           changed += closed_form_hessian<S>(s, block, count, q, mode, packed);
         } else {
-          s.kernel->hessian(q, data_of(s, block), s.uniforms, value, by_q, packed);
+          entries_of(s).hessian(q, data_of(s, block), uniforms_of(s), value, by_q, packed);
           if (project) indefinite.add(packed, ~definite<S::kSize>(packed) & ((1u << count) - 1));
         }
         sum += w.times_volume(load(value));
@@ -150,7 +155,7 @@ void hessian_of(const Stencils& s, BlockRange range, const ChunkBlocks& blocks, 
       if (gradient != nullptr) scatter_points<S>(s, block, count, by_point, gradient);
     }
     indefinite.run();
-    packed = room.scratch;
+    packed = scratch;
     for (int block = first; block < last; ++block, packed += s.quadrature * size) {
       if (block + 1 < last) prefetch(s.slots + (block + 1L) * pairs * kWidth, 4L * kWidth * pairs);
       if (differences.apply) {

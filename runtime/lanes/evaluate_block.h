@@ -20,7 +20,11 @@ inline Row& row_at(double* rows, long place) { return *reinterpret_cast<Row*>(ro
 inline Row row_at(const double* rows, long place) { return *reinterpret_cast<const Row*>(rows + place); }
 
 // gather: the rows of W vertices as three vectors. to_rows: the way back, padded with zero.
-#if ERGON_LANES == 8
+#ifdef ERGON_SINGLE
+
+#include "runtime/lanes/evaluate_block_single.h"
+
+#elif ERGON_LANES == 8
 
 inline Vector3 gather(const double* rows, const int* vertices) {
   Real pair[4];
@@ -98,7 +102,7 @@ inline void to_rows(Real x, Real y, Real z, Row* lane) {
 #else
 
 inline Vector3 gather(const double* rows, const int* vertices) {
-  const double* row = rows + 4L * vertices[0];
+  const Scalar* row = rows + 4L * vertices[0];
   return {{row[0], row[1], row[2]}};
 }
 
@@ -118,7 +122,7 @@ inline void scatter(double* rows, const int* vertices, int count, const Vector3&
 }
 
 // Adds a 3x3 block per lane, given column by column as nine vectors, to the sums of a chunk.
-inline void add_block(double* sums, const int* slots, const double* block) {
+inline void add_block(double* sums, const int* slots, const Scalar* block) {
   for (int c = 0; c < 3; ++c, block += 3 * kWidth) {
     Row lane[kWidth];
     to_rows(load(block), load(block + kWidth), load(block + 2 * kWidth), lane);
@@ -127,12 +131,12 @@ inline void add_block(double* sums, const int* slots, const double* block) {
 }
 
 // Exchanges block and transpose in the given lanes.
-inline void transpose_lanes(double* block, unsigned lanes) {
+inline void transpose_lanes(Scalar* block, unsigned lanes) {
   const Mask turned = from_bits(lanes);
   for (int r = 0; r < 3; ++r) {
     for (int c = 0; c < r; ++c) {
-      double* const lower = block + (3 * c + r) * kWidth;
-      double* const upper = block + (3 * r + c) * kWidth;
+      Scalar* const lower = block + (3 * c + r) * kWidth;
+      Scalar* const upper = block + (3 * r + c) * kWidth;
       const Real a = load(lower), b = load(upper);
       store(lower, select(turned, b, a));
       store(upper, select(turned, a, b));

@@ -48,11 +48,11 @@ inline Differences find_differences(const Stencils& s) {
 
 // As element_matrix in runtime/lanes/evaluate_hessian.h, from one packed q-Hessian.
 template <class S>
-inline void difference_matrix(const Differences& d, const double* packed, double* element) {
+inline void difference_matrix(const Differences& d, const Scalar* packed, Scalar* element) {
   // Stores a block of rows of point a and columns of point b; those above the diagonal are kept transposed.
   const auto put = [&](int a, int b, const Real(&block)[3][3]) {
     const bool below = a >= b;
-    double* out = element + 9L * (below ? a * (a + 1) / 2 + b : b * (b + 1) / 2 + a) * kWidth;
+    Scalar* out = element + 9L * (below ? a * (a + 1) / 2 + b : b * (b + 1) / 2 + a) * kWidth;
     for (int r = 0; r < 3; ++r) {
       for (int c = 0; c < 3; ++c) store(out + (below ? 3 * c + r : 3 * r + c) * kWidth, block[r][c]);
     }
@@ -63,7 +63,7 @@ inline void difference_matrix(const Differences& d, const double* packed, double
     Real sum[3][3] = {};
 #pragma GCC unroll 4
     for (int k = 0; k < S::kVectors; ++k) {
-      const double sign = d.sign[k] * d.sign[l];
+      const Scalar sign = d.sign[k] * d.sign[l];
       Real block[3][3];
 #pragma GCC unroll 3
       for (int r = 0; r < 3; ++r) {

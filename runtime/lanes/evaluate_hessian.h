@@ -9,7 +9,7 @@ namespace {
 // The element matrix of one vector of stencils: block (a, b <= a) = volume * sum_kl w_ka w_lb H_kl, summed over the
 // points of quadrature; nine vectors, column by column, at a*(a + 1)/2 + b. `packed` is [quadrature][packed].
 template <class S>
-inline void sum_products(const Stencils& s, int block_index, const double* packed, double* element) {
+inline void sum_products(const Stencils& s, int block_index, const Scalar* packed, Scalar* element) {
   constexpr int kVectors = S::kVectors;
   const int n = S::points(s);
   const int last = S::kDensity ? n - 1 : n;  // a density's last diagonal block is minus the sum of those beside it
@@ -34,7 +34,7 @@ inline void sum_products(const Stencils& s, int block_index, const double* packe
         }
 #pragma GCC unroll 4
         for (int a = b; a < n; ++a) {
-          double* out = element + (9L * (a * (a + 1) / 2 + b) + e) * kWidth;
+          Scalar* out = element + (9L * (a * (a + 1) / 2 + b) + e) * kWidth;
           Real sum = w.at(0, a) * half[0];
           for (int k = 1; k < kVectors; ++k) sum += w.at(k, a) * half[k];
           store(out, p == 0 ? sum : load(out) + sum);
@@ -43,7 +43,7 @@ inline void sum_products(const Stencils& s, int block_index, const double* packe
     }
   }
   if (!S::kDensity) return;
-  double* row = element + 9L * (n * (n - 1) / 2) * kWidth;
+  Scalar* row = element + 9L * (n * (n - 1) / 2) * kWidth;
   for (int e = 0; e < 9; ++e) {
     Real sum = load(row + e * kWidth);
     for (int b = 1; b < last; ++b) sum += load(row + (9L * b + e) * kWidth);
@@ -53,7 +53,7 @@ inline void sum_products(const Stencils& s, int block_index, const double* packe
 
 // `room`: element_room doubles.
 template <class S>
-inline void element_matrix(const Stencils& s, int block_index, double* packed, double* element, double* room) {
+inline void element_matrix(const Stencils& s, int block_index, Scalar* packed, Scalar* element, Scalar* room) {
   if constexpr (S::kTable) {
     sum_table_products<S>(s, block_index, packed, element, room);
   } else {
@@ -68,10 +68,10 @@ inline int element_room(const Stencils& s) {
 }
 
 template <class S>
-inline void add_element(const Stencils& s, int block_index, double* element, double* sums) {
+inline void add_element(const Stencils& s, int block_index, Scalar* element, double* sums) {
   const int n = S::points(s), pairs = n * (n + 1) / 2;
   const int* slots = s.slots + static_cast<long>(block_index) * pairs * kWidth;
-  const unsigned char* turned = S::kAscending ? nullptr : s.turned + static_cast<long>(block_index) * pairs;
+  const unsigned short* turned = S::kAscending ? nullptr : s.turned + static_cast<long>(block_index) * pairs;
   for (int pair = 0; pair < pairs; ++pair) {
     if (!S::kAscending && turned[pair] != 0) transpose_lanes(element + 9L * pair * kWidth, turned[pair]);
     add_block(sums, slots + pair * kWidth, element + 9L * pair * kWidth);

@@ -8,14 +8,14 @@
 namespace ergon::lanes {
 namespace {
 
-inline Vector column_of(const double* f, int column) {
+inline Vector column_of(const Scalar* f, int column) {
   f += 3L * column * kWidth;
   return {load(f), load(f + kWidth), load(f + 2 * kWidth)};
 }
 
 // F from q; `displacement`: q is F - I.
 template <int Q>
-inline void deformation(const double* q, bool displacement, Vector* f) {
+inline void deformation(const Scalar* q, bool displacement, Vector* f) {
   for (int c = 0; c < Q; ++c) f[c] = column_of(q, c);
   if (!displacement) return;
   f[0].x += 1;
@@ -26,17 +26,16 @@ inline void deformation(const double* q, bool displacement, Vector* f) {
 // Hessian of the density at q, projected, packed as in projection.h. Returns in how many of the first `count` lanes
 // something was changed.
 template <class S>
-inline int closed_form_hessian(const Stencils& s, int block, int count, const double* q, Negative mode,
-                               double* packed) {
+inline int closed_form_hessian(const Stencils& s, int block, int count, const Scalar* q, Negative mode,
+                               Scalar* packed) {
   if constexpr (!S::kDensity) return 0;
   constexpr int Q = S::kDensity ? S::kVectors : 1;
-  const ErgonKernel& kernel = *s.kernel;
   Vector f[Q];
-  deformation<Q>(q, kernel.displacement != 0, f);
-  alignas(64) double stretch[Q * kWidth], blocks[IsotropicHessian<Q>::kBlocks * kWidth];
+  deformation<Q>(q, s.kernel->displacement != 0, f);
+  alignas(64) Scalar stretch[Q * kWidth], blocks[IsotropicHessian<Q>::kBlocks * kWidth];
   const Svd<Q> svd = decompose<Q>(f);
   for (int i = 0; i < Q; ++i) store(stretch + i * kWidth, svd.s[i]);
-  kernel.principal(stretch, data_of(s, block), s.uniforms, blocks);
+  entries_of(s).principal(stretch, data_of(s, block), uniforms_of(s), blocks);
   IsotropicHessian<Q> h(blocks);
   const unsigned changed = project_isotropic(h, mode) & ((1u << count) - 1);
   rotate_isotropic(svd, h, packed);

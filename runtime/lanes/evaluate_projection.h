@@ -16,7 +16,7 @@ class ProjectionBatch {
 
   // Bit l of `lanes`: the matrix in lane l of `packed` is to be projected by the next run(). At most kCapacity calls
   // between two runs.
-  void add(double* packed, unsigned lanes) {
+  void add(Scalar* packed, unsigned lanes) {
     if (lanes != 0) waiting_[size_++] = {packed, lanes};
   }
 
@@ -44,16 +44,16 @@ class ProjectionBatch {
  private:
   static constexpr int kPacked = N * (N + 1) / 2;
   struct Waiting {
-    double* packed;
+    Scalar* packed;
     unsigned lanes;
   };
 
   // The matrices of one block and, in its free lanes, some of others.
   struct Full {
-    alignas(64) double matrix[kPacked * kWidth];
+    alignas(64) Scalar matrix[kPacked * kWidth];
     Waiting base;
     unsigned lent;
-    double* borrower[kWidth];
+    Scalar* borrower[kWidth];
 
     unsigned lanes() const { return base.lanes | lent; }
 
@@ -85,7 +85,7 @@ class ProjectionBatch {
       changed += __builtin_popcount(raised & base.lanes);
       const Mask own = from_bits(base.lanes);
       for (int e = 0; e < kPacked; ++e) {
-        double* entry = base.packed + e * kWidth;
+        Scalar* entry = base.packed + e * kWidth;
         store(entry, select(own, load(matrix + e * kWidth), load(entry)));
       }
       for (unsigned rest = lent; rest != 0; rest &= rest - 1) {

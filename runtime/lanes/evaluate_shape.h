@@ -8,6 +8,19 @@
 namespace ergon::lanes {
 namespace {
 
+// The kernel's entry points and what it keeps, in the precision that this is compiled for.
+#ifdef ERGON_SINGLE
+constexpr bool kSingle = true;
+inline const ErgonSingle& entries_of(const Stencils& s) { return *s.kernel->single; }
+inline const Scalar* uniforms_of(const Stencils& s) { return s.single_uniforms; }
+inline const Scalar* elements_of(const Stencils& s) { return s.single_elements; }
+#else
+constexpr bool kSingle = false;
+inline const ErgonKernel& entries_of(const Stencils& s) { return *s.kernel; }
+inline const Scalar* uniforms_of(const Stencils& s) { return s.uniforms; }
+inline const Scalar* elements_of(const Stencils& s) { return s.elements; }
+#endif
+
 // Where weights come from: constants of a stencil energy's kernel, the same in all lanes; given for each stencil;
 // gradients of shape functions in each lane; or their gradients in the reference element, the same in all lanes, times
 // an inverse map in each.
@@ -20,7 +33,8 @@ struct Shape {
   static constexpr int kVectors = Q;
   static constexpr Source kSource = W;
   static constexpr bool kDensity = W == Source::gradients || W == Source::table;
-  static constexpr bool kRelative = W != Source::kernel;  // all points but the last are gathered relative to it
+  // All points but the last are gathered relative to it: floats have no digits to spare.
+  static constexpr bool kRelative = W != Source::kernel || kSingle;
   static constexpr bool kTable = W == Source::table;
   static constexpr bool kAscending = W == Source::gradients;  // points stand in ascending order of vertex
   static constexpr int kMost = P != 0 ? P : kMaxPoints;
@@ -55,8 +69,8 @@ auto with_shape(const Stencils& s, F f) {
   return f(Shape<0, 4, Source::kernel>{});
 }
 
-inline const double* data_of(const Stencils& s, int block) {
-  return s.elements + static_cast<long>(block) * s.kernel->elements * kWidth;
+inline const Scalar* data_of(const Stencils& s, int block) {
+  return elements_of(s) + static_cast<long>(block) * s.kernel->elements * kWidth;
 }
 
 template <class S, Source = S::kSource>
@@ -94,6 +108,11 @@ class Weights<S, Source::kernel> {
  public:
   Weights(const Stencils& s, int, int) : weight_(s.weights), points_(S::points(s)) {}
   Real at(int k, int a) const { return splat(weight_[k * points_ + a]); }
+  Real sum(int k) const {
+    double sum = 0;
+    for (int a = 0; a < points_; ++a) sum += weight_[k * points_ + a];
+    return splat(sum);
+  }
   static Real times_volume(Real a) { return a; }
 
  private:
@@ -162,13 +181,18 @@ inline void prefetch_block(const Stencils& s, int block) {
     const long weights = static_cast<long>(S::kVectors) * (n + 1);
     prefetch(s.weights + block * weights * kWidth, vector * weights);
   }
-  prefetch(data_of(s, block), vector * s.kernel->elements);
+  prefetch(data_of(s, block), static_cast<long>(sizeof(Real)) * s.kernel->elements);
 }
 
 template <class S>
 inline void gather_points(const Stencils& s, int block, const double* x, Vector3* points) {
   const int n = S::points(s);
   const int* vertices = s.vertices + static_cast<long>(block) * n * kWidth;
+#ifdef ERGON_SINGLE
+  const int* last = vertices + (n - 1) * kWidth;
+  for (int a = 0; a + 1 < n; ++a) points[a] = gather(x, vertices + a * kWidth, last);
+  points[n - 1] = gather(x, last);
+#else
   for (int a = 0; a < n; ++a) points[a] = gather(x, vertices + a * kWidth);
   if constexpr (S::kRelative) {
     // Relative to the last point, so that its weights are not needed and nothing cancels far from the origin.
@@ -176,11 +200,12 @@ inline void gather_points(const Stencils& s, int block, const double* x, Vector3
       for (int c = 0; c < 3; ++c) points[a].c[c] -= points[n - 1].c[c];
     }
   }
+#endif
 }
 
 // q = (weights (x) I3) x, from what gather_points gave.
 template <class S>
-inline void form_q(const Stencils& s, const Weights<S>& w, const Vector3* points, double* q) {
+inline void form_q(const Stencils& s, const Weights<S>& w, const Vector3* points, Scalar* q) {
   const int n = S::kRelative ? S::points(s) - 1 : S::points(s);
   if constexpr (S::kTable) {
     constexpr int Q = S::kVectors;
@@ -202,7 +227,7 @@ inline void form_q(const Stencils& s, const Weights<S>& w, const Vector3* points
   } else
     for (int k = 0; k < S::kVectors; ++k) {
       Real sum[3] = {splat(0), splat(0), splat(0)};
-      if constexpr (S::kSource == Source::given) {
+      if constexpr (S::kRelative && !S::kDensity) {
         for (int c = 0; c < 3; ++c) sum[c] = w.sum(k) * points[n].c[c];
       }
       for (int a = 0; a < n; ++a) {
@@ -214,7 +239,7 @@ inline void form_q(const Stencils& s, const Weights<S>& w, const Vector3* points
 
 // g_a += volume * sum_k w_ka dpsi/dq_k for all points but a density's last, whose gradient is minus the sum.
 template <class S>
-inline void chain_gradient(const Stencils& s, const Weights<S>& w, const double* by_q, Vector3* by_point) {
+inline void chain_gradient(const Stencils& s, const Weights<S>& w, const Scalar* by_q, Vector3* by_point) {
   const int n = S::kDensity ? S::points(s) - 1 : S::points(s);
   if constexpr (S::kTable) {
     constexpr int Q = S::kVectors;

@@ -15,7 +15,7 @@ constexpr int packed_entry(int i, int j, int r, int c) {
 
 // H -> volume * (map (x) I3) H (map (x) I3)^T, in place.
 template <class S>
-inline void to_reference_axes(const Weights<S>& w, double* packed) {
+inline void to_reference_axes(const Weights<S>& w, Scalar* packed) {
   constexpr int Q = S::kVectors;
   Real half[Q][Q][9];
 #pragma GCC unroll 3
@@ -52,7 +52,7 @@ inline void to_reference_axes(const Weights<S>& w, double* packed) {
 
 // R components of the blocks (a, b) for G consecutive a: sum over `steps` of weights[step][a] half[step][r].
 template <int G, int R>
-inline void add_rows(const double* half, const double* weights, int points, int steps, double* const* out) {
+inline void add_rows(const Scalar* half, const double* weights, int points, int steps, Scalar* const* out) {
   Real sum[G][R] = {};
   for (int step = 0; step < steps; ++step, half += R * kWidth, weights += points) {
     Real x[R];
@@ -74,13 +74,13 @@ inline void add_rows(const double* half, const double* weights, int points, int 
 
 // Rows whose sums add_rows keeps in registers.
 template <int R>
-constexpr int kRows = R == 1        ? 12
-                      : kWidth == 8 ? 8
-                                    : 4;
+constexpr int kRows = R == 1               ? 12
+                      : sizeof(Real) == 64 ? 8
+                                           : 4;
 
 template <int R, int G = kRows<R>>
-inline void add_some_rows(int rows, const double* half, const double* weights, int points, int steps,
-                          double* const* out) {
+inline void add_some_rows(int rows, const Scalar* half, const double* weights, int points, int steps,
+                          Scalar* const* out) {
   if constexpr (G > 1) {
     if (rows < G) return add_some_rows<R, G - 1>(rows, half, weights, points, steps, out);
   }
@@ -90,10 +90,10 @@ inline void add_some_rows(int rows, const double* half, const double* weights, i
 // R of the nine components of all blocks, from the one numbered `first`. The entries they need are copied to `room`, so
 // that what is read again and again stays in the first-level cache.
 template <class S, int R>
-inline void sum_components(const Stencils& s, int first, const double* packed, double* element, double* room) {
+inline void sum_components(const Stencils& s, int first, const Scalar* packed, Scalar* element, Scalar* room) {
   constexpr int Q = S::kVectors;
   const int n = S::points(s), c = first / 3;
-  double* entries = room;  // [quadrature][Q][Q][R]
+  Scalar* entries = room;  // [quadrature][Q][Q][R]
   for (int p = 0; p < s.quadrature; ++p, packed += S::kPacked * kWidth) {
     for (int i = 0; i < Q; ++i) {
       for (int j = 0; j < Q; ++j) {
@@ -103,10 +103,10 @@ inline void sum_components(const Stencils& s, int first, const double* packed, d
       }
     }
   }
-  double* const half = entries;  // [quadrature][Q][R]
-  double* const out = element + static_cast<long>(first) * kWidth;
+  Scalar* const half = entries;  // [quadrature][Q][R]
+  Scalar* const out = element + static_cast<long>(first) * kWidth;
   for (int b = 0; b < n; ++b) {
-    const double* h = room;
+    const Scalar* h = room;
     for (int p = 0; p < s.quadrature; ++p) {
       Real weight[Q];
       for (int j = 0; j < Q; ++j) weight[j] = splat(s.table[(p * Q + j) * n + b]);
@@ -126,7 +126,7 @@ inline void sum_components(const Stencils& s, int first, const double* packed, d
     }
     for (int a = b; a < n; a += kRows<R>) {
       const int rows = n - a < kRows<R> ? n - a : kRows<R>;
-      double* place[kRows<R>];
+      Scalar* place[kRows<R>];
       for (int g = 0; g < rows; ++g) place[g] = out + 9L * ((a + g) * (a + g + 1) / 2 + b) * kWidth;
       add_some_rows<R>(rows, half, s.table + a, n, s.quadrature * Q, place);
     }
@@ -144,7 +144,7 @@ inline int table_room(const Stencils& s) {
 
 // As sum_products; `packed` is spoiled, `room` holds table_room doubles.
 template <class S>
-inline void sum_table_products(const Stencils& s, int block_index, double* packed, double* element, double* room) {
+inline void sum_table_products(const Stencils& s, int block_index, Scalar* packed, Scalar* element, Scalar* room) {
   for (int p = 0; p < s.quadrature; ++p) {
     to_reference_axes<S>(Weights<S>(s, block_index, p), packed + static_cast<long>(p) * S::kPacked * kWidth);
   }

@@ -22,7 +22,7 @@ inline void transpose_times(const double* m, const Real* in, Real* out, int step
 
 // One component of the blocks (a, b) for all a >= b: sum over points p and axes i of (gradient of the shape function of
 // a along i at p) half[p][i]. `half` is [27][3], of vectors; `out` the place of the component in the first block.
-inline void add_tensor_rows(const Stencils& s, const double* half, int b, double* out) {
+inline void add_tensor_rows(const Stencils& s, const Scalar* half, int b, Scalar* out) {
   // Points instead of nodes first: there, a gradient along an axis takes only the points of that line.
   const double *between = s.axis, *values = s.axis + 9;
   const auto at = [half](int p, int i) { return load(half + (3L * p + i) * kWidth); };

@@ -45,8 +45,11 @@ struct Stencils {
   // [block][pairs][W], in doubles; behind the last for a pair with a fixed vertex and for padding.
   const int* slots;
   // [block][pairs]: bit l is set when in lane l the block's row in the matrix is that of b. Null where points ascend.
-  const unsigned char* turned;
+  const unsigned short* turned;
   bool combined;  // each stencil has weights of its own
+  // Of a kernel in single precision, in place of elements and uniforms.
+  const float* single_elements;
+  const float* single_uniforms;
 };
 
 struct BlockRange {
@@ -84,7 +87,7 @@ struct ChunkNumbering {
   unsigned long long* bits;  // room: free*(free + 63)/64 words, zero before and after
   int* rank;                 // room: as many
   int* slots;                // of all stencils: as in Stencils
-  unsigned char* turned;     // likewise; zero before
+  unsigned short* turned;    // likewise; zero before
   int* row;                  // block row and column in the matrix of every block, by column and then row
   int* column;
 };
@@ -109,7 +112,11 @@ constexpr int kWidths[] = {1, 2};
 #endif
 // The widest vectors this machine has.
 int best_lanes();
+// The same of floats: 1, 4, 8 or 16.
+int best_single_lanes();
 // Throws std::invalid_argument when this machine or build lacks that width.
 const LaneOperations& lane_operations(int lanes);
+// Of kernels in single precision.
+const LaneOperations& single_lane_operations(int lanes);
 
 }  // namespace ergon::lanes

@@ -61,7 +61,7 @@ inline int number_chunk_blocks(const Stencils& s, BlockRange range, const ChunkN
     if (a >= 0 && b >= 0 && l < real) {
       const int row = a < b ? b : a, column = a < b ? a : b, w = word_of(row, column);
       slot = n.rank[w] + __builtin_popcountll(n.bits[w] & ((Word{1} << (row & 63)) - 1));
-      if (a < b) n.turned[place] |= static_cast<unsigned char>(1u << l);
+      if (a < b) n.turned[place] |= static_cast<unsigned short>(1u << l);
     }
     n.slots[place * kWidth + l] = kSumDoubles * slot;
   });

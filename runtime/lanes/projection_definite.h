@@ -7,7 +7,7 @@ namespace ergon::lanes {
 namespace {
 
 template <int N>
-unsigned definite(const double* packed) {
+unsigned definite(const Scalar* packed) {
   Real a[N * (N + 1) / 2];
 #pragma GCC unroll 78
   for (int i = 0; i < N * (N + 1) / 2; ++i) a[i] = load(packed + i * kWidth);
@@ -15,8 +15,8 @@ unsigned definite(const double* packed) {
 #pragma GCC unroll 12
   for (int i = 0; i < N; ++i) largest = max(a[i * (i + 3) / 2], largest);
   // The second term lets a zero matrix pass.
-  Real shift = largest * (5e-16 * N) + 1e-300;
-  Mask good = less(largest, splat(1e300));
+  Real shift = largest * (kShift * N) + kNegligible;
+  Mask good = less(largest, splat(kHuge));
 #pragma GCC unroll 12
   for (int k = 0; k < N; ++k) {
     Real pivot = a[k * (k + 3) / 2] + shift;

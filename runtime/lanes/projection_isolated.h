@@ -47,7 +47,7 @@ inline Isolated isolated_eigenvector(const Symmetric& a) {
   const Real diagonal = b.a00 * b.a00 + b.a11 * b.a11 + b.a22 * b.a22;
   const Real rest = b.a10 * b.a10 + b.a20 * b.a20 + b.a21 * b.a21;
   const Real squared = diagonal * (1.0 / 6.0) + rest * (1.0 / 3.0);
-  Real inverse = rsqrt(max(squared, splat(1e-290)));
+  Real inverse = rsqrt(max(squared, splat(kNegligible)));
   const Real m0 = b.a11 * b.a22 - b.a21 * b.a21;
   const Real m1 = b.a10 * b.a22 - b.a21 * b.a20;
   const Real m2 = b.a10 * b.a21 - b.a11 * b.a20;

@@ -28,7 +28,7 @@ struct IsotropicHessian {
   // All twists, all flips, all normals. For a solid number k of the twists belongs to the two axes other than k.
   Real eigenvalue[kBlocks - kStretch];
 
-  explicit IsotropicHessian(const double* blocks) {
+  explicit IsotropicHessian(const Scalar* blocks) {
     for (int i = 0; i < kStretch; ++i) stretch[i] = load(blocks + i * kWidth);
     for (int i = kStretch; i < kBlocks; ++i) eigenvalue[i - kStretch] = load(blocks + i * kWidth);
   }
@@ -69,14 +69,14 @@ inline Svd<Q> decompose(const Vector* f) {
 template <int Q>
 inline unsigned project_isotropic(IsotropicHessian<Q>& h, Negative mode) {
   using H = IsotropicHessian<Q>;
-  alignas(64) double packed[H::kStretch * kWidth];
+  alignas(64) Scalar packed[H::kStretch * kWidth];
   for (int i = 0; i < H::kStretch; ++i) store(packed + i * kWidth, h.stretch[i]);
   unsigned changed = ~definite<Q>(packed) & kAllLanes;
   if (changed != 0) {
     project_lanes<Q>(packed, mode, changed);
     for (int i = 0; i < H::kStretch; ++i) h.stretch[i] = load(packed + i * kWidth);
   }
-  const double factor = mode == Negative::clamp ? 0.0 : -1.0;
+  const Scalar factor = mode == Negative::clamp ? 0 : -1;
 #pragma GCC unroll 6
   for (Real& eigenvalue : h.eigenvalue) {
     const Mask negative = less(eigenvalue, splat(0));
@@ -87,7 +87,7 @@ inline unsigned project_isotropic(IsotropicHessian<Q>& h, Negative mode) {
 }
 
 // Stores the symmetric 3x3 block U K U' of columns c and d <= c of F; of a diagonal block the lower triangle.
-inline void store_rotated(const Real (&u)[3][3], const Real (&k)[3][3], int c, int d, double* packed) {
+inline void store_rotated(const Real (&u)[3][3], const Real (&k)[3][3], int c, int d, Scalar* packed) {
 #pragma GCC unroll 3
   for (int r = 0; r < 3; ++r) {
     Real t[3];
@@ -107,7 +107,7 @@ inline void store_rotated(const Real (&u)[3][3], const Real (&k)[3][3], int c, i
 // c and d of F is U K U' with K_ij = g_ij v_i[c] v_j[d] + b_ij v_j[c] v_i[d] off the diagonal and
 // K_ii = g_ii v_i[c] v_i[d] + sum over j of a_ij v_j[c] v_j[d], a and b half the sum and the difference of flip and
 // twist; the normal's diagonal entry is the sum over i of normal_i v_i[c] v_i[d].
-inline void rotate_isotropic(const Svd3& f, const IsotropicHessian<3>& h, double* packed) {
+inline void rotate_isotropic(const Svd3& f, const IsotropicHessian<3>& h, Scalar* packed) {
   const Real u[3][3] = {{f.u[0].x, f.u[0].y, f.u[0].z}, {f.u[1].x, f.u[1].y, f.u[1].z}, {f.u[2].x, f.u[2].y, f.u[2].z}};
   const Real v[3][3] = {{f.v[0].x, f.v[0].y, f.v[0].z}, {f.v[1].x, f.v[1].y, f.v[1].z}, {f.v[2].x, f.v[2].y, f.v[2].z}};
   Real a[3], b[3];
@@ -138,7 +138,7 @@ inline void rotate_isotropic(const Svd3& f, const IsotropicHessian<3>& h, double
   }
 }
 
-inline void rotate_isotropic(const Svd2& f, const IsotropicHessian<2>& h, double* packed) {
+inline void rotate_isotropic(const Svd2& f, const IsotropicHessian<2>& h, Scalar* packed) {
   const Real u[3][3] = {{f.u[0].x, f.u[0].y, f.u[0].z}, {f.u[1].x, f.u[1].y, f.u[1].z}, {f.u[2].x, f.u[2].y, f.u[2].z}};
   const Real a = 0.5 * (h.flip(0) + h.twist(0)), b = 0.5 * (h.flip(0) - h.twist(0)), zero = splat(0);
   for (int c = 0; c < 2; ++c) {
@@ -153,7 +153,7 @@ inline void rotate_isotropic(const Svd2& f, const IsotropicHessian<2>& h, double
   }
 }
 
-inline void rotate_isotropic(const Svd1& f, const IsotropicHessian<1>& h, double* packed) {
+inline void rotate_isotropic(const Svd1& f, const IsotropicHessian<1>& h, Scalar* packed) {
   const Real u[3] = {f.u[0].x, f.u[0].y, f.u[0].z};
   const Real along = h.stretch[0] - h.normal(0);
   for (int r = 0; r < 3; ++r) {

@@ -7,7 +7,7 @@
 namespace ergon::lanes {
 namespace {
 
-inline void project_1(double* packed, bool absolute, unsigned lanes) {
+inline void project_1(Scalar* packed, bool absolute, unsigned lanes) {
   const Real a = load(packed);
   const Mask negative = both(from_bits(lanes), both(less(a, splat(0)), less(splat(-__builtin_inf()), a)));
   store(packed, select(negative, absolute ? -a : splat(0), a));
@@ -22,29 +22,29 @@ struct Change {
 inline Change projection_change(Real a00, Real a10, Real a11) {
   const Real m = 0.5 * (a00 + a11), d = 0.5 * (a00 - a11), r = sqrt(d * d + a10 * a10);
   const Mask positive = less_equal(r, m), negative = less_equal(r, -m);
-  const Real over_r = 1 / select(negative, splat(1), max(r, splat(1e-290)));
+  const Real over_r = 1 / select(negative, splat(1), max(r, splat(kNegligible)));
   const Real g = 0.5 * (r - m);
   Change c{g * (1 - d * over_r), -g * (a10 * over_r), g * (1 + d * over_r)};
   c = {select(negative, -a00, c.c00), select(negative, -a10, c.c10), select(negative, -a11, c.c11)};
   return {select(positive, splat(0), c.c00), select(positive, splat(0), c.c10), select(positive, splat(0), c.c11)};
 }
 
-inline void project_2(double* packed, bool absolute, unsigned lanes) {
+inline void project_2(Scalar* packed, bool absolute, unsigned lanes) {
   const Real a00 = load(packed), a10 = load(packed + kWidth), a11 = load(packed + 2 * kWidth);
   const Real largest = max(max(abs(a00), abs(a11)), abs(a10));
   const Real sum = abs(a00) + abs(a11) + abs(a10);  // not finite if an entry is not
   const Mask chosen = both(from_bits(lanes), less(sum, splat(__builtin_inf())));
-  const Real size = max(largest, splat(1e-290));
+  const Real size = max(largest, splat(kNegligible));
   const Real scale = 1 / size;
   const Change c = projection_change(a00 * scale, a10 * scale, a11 * scale);
-  const Real factor = size * (absolute ? 2.0 : 1.0);
+  const Real factor = size * Scalar(absolute ? 2 : 1);
   store(packed, select(chosen, a00 + factor * c.c00, a00));
   store(packed + kWidth, select(chosen, a10 + factor * c.c10, a10));
   store(packed + 2 * kWidth, select(chosen, a11 + factor * c.c11, a11));
 }
 
 // By the isolated eigenvector v, which leaves a 2x2 matrix on its complement.
-inline void project_3(double* packed, bool absolute, unsigned lanes) {
+inline void project_3(Scalar* packed, bool absolute, unsigned lanes) {
   Real entry[6];
   Real largest = splat(0), sum = splat(0);
 #pragma GCC unroll 6
@@ -54,7 +54,7 @@ inline void project_3(double* packed, bool absolute, unsigned lanes) {
     sum += abs(entry[i]);
   }
   const Mask chosen = both(from_bits(lanes), less(sum, splat(__builtin_inf())));
-  const Real size = max(largest, splat(1e-290));
+  const Real size = max(largest, splat(kNegligible));
   const Real scale = 1 / size;
   const Symmetric a{entry[0] * scale, entry[1] * scale, entry[2] * scale,
                     entry[3] * scale, entry[4] * scale, entry[5] * scale};
@@ -64,7 +64,7 @@ inline void project_3(double* packed, bool absolute, unsigned lanes) {
   const Real change = max(-dot(v, a * v), splat(0));
   const Vector aw = a * w;
   const Change c = projection_change(dot(w, aw), dot(y, aw), dot(y, a * y));
-  const Real factor = size * (absolute ? 2.0 : 1.0);
+  const Real factor = size * Scalar(absolute ? 2 : 1);
   const Vector p = (factor * change) * v;
   const Vector q = (factor * c.c00) * w + (factor * c.c10) * y;
   const Vector r = (factor * c.c10) * w + (factor * c.c11) * y;

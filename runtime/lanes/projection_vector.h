@@ -1,15 +1,22 @@
 #pragma once
-// ERGON_LANES adjacent doubles as one value, with the few operations that the projections need. It establishes that the
+// ERGON_LANES adjacent doubles, or floats where ERGON_SINGLE is defined, as one value, with the few operations that
+// evaluation and projections need. It establishes that the
 // same text compiles to scalar code, to vectors with vector masks, and to vectors with mask registers.
 //
 // Everything is in an unnamed namespace: code for one width must never be merged with that of another by the linker.
 
 #ifndef ERGON_LANES
-#error "files in runtime/lanes are compiled once per width, with -DERGON_LANES=1, 2, 4 or 8"
+#error "files in runtime/lanes are compiled once per width, with -DERGON_LANES=1, 2, 4 or 8 (16 of floats)"
 #endif
-#if (ERGON_LANES == 8 && defined(__AVX512F__) && defined(__AVX512DQ__)) || (ERGON_LANES == 4 && defined(__AVX__))
+#ifdef ERGON_SINGLE
+#define ERGON_VECTOR_BYTES (4 * ERGON_LANES)
+#else
+#define ERGON_VECTOR_BYTES (8 * ERGON_LANES)
+#endif
+#if (ERGON_VECTOR_BYTES == 64 && defined(__AVX512F__) && defined(__AVX512DQ__)) || \
+    (ERGON_VECTOR_BYTES == 32 && defined(__AVX__))
 #include <immintrin.h>
-#elif ERGON_LANES == 2 && defined(__SSE2__)
+#elif ERGON_VECTOR_BYTES == 16 && defined(__SSE2__)
 #include <emmintrin.h>
 #endif
 
@@ -19,11 +26,22 @@ namespace {
 constexpr int kWidth = ERGON_LANES;
 constexpr unsigned kAllLanes = (1u << kWidth) - 1;
 
+#ifdef ERGON_SINGLE
+using Scalar = float;
+constexpr Scalar kNegligible = 1e-30f,
+                 kHuge = 1e30f;     // below and above what is worth telling apart from 0 and infinity
+constexpr Scalar kShift = 2.5e-7f;  // of the test for definiteness, in projection.h
+#else
+using Scalar = double;
+constexpr Scalar kNegligible = 1e-290, kHuge = 1e290;
+constexpr Scalar kShift = 5e-16;
+#endif
+
 #if ERGON_LANES == 1
 
-using Real = double;
+using Real = Scalar;
 using Mask = bool;
-inline Real splat(double a) { return a; }
+inline Real splat(Scalar a) { return a; }
 inline Mask less(Real a, Real b) { return a < b; }
 inline Mask less_equal(Real a, Real b) { return a <= b; }
 inline Real select(Mask m, Real a, Real b) { return m ? a : b; }
@@ -32,12 +50,14 @@ inline Mask either(Mask a, Mask b) { return a || b; }
 inline Mask negate(Mask a) { return !a; }
 inline unsigned bits(Mask a) { return a; }
 inline Mask from_bits(unsigned lanes) { return lanes & 1; }
-inline Real abs(Real a) { return __builtin_fabs(a); }
-inline Real sqrt(Real a) { return __builtin_sqrt(a); }
-inline Real rsqrt(Real a) { return 1 / __builtin_sqrt(a); }
+inline Real abs(Real a) { return a < 0 ? -a : a; }
+inline Real sqrt(Real a) { return static_cast<Real>(__builtin_sqrt(a)); }
+inline Real rsqrt(Real a) { return 1 / sqrt(a); }
 inline Real copysign(Real a, Real b) { return __builtin_copysign(a, b); }
 inline Real half_sign_product(Real a, Real b) { return __builtin_copysign(0.5, a * b); }
 
+#elif defined(ERGON_SINGLE)
+#include "runtime/lanes/vector_single.h"
 #else
 
 typedef double Real __attribute__((vector_size(8 * ERGON_LANES)));
@@ -124,13 +144,27 @@ inline Real dot(const Real* a, const Real* b) {
   return (s[0] + s[1]) + (s[2] + s[3]);
 }
 
-// p is aligned to 64 bytes.
-inline Real load(const double* p) {
+// p is aligned to 64 bytes, or to the vector where that is smaller.
+constexpr int kAligned = sizeof(Real) < 64 ? sizeof(Real) : 64;
+inline Real load(const Scalar* p) {
   Real a;
-  __builtin_memcpy(&a, __builtin_assume_aligned(p, 8 * kWidth), sizeof(a));
+  __builtin_memcpy(&a, __builtin_assume_aligned(p, kAligned), sizeof(a));
   return a;
 }
-inline void store(double* p, Real a) { __builtin_memcpy(__builtin_assume_aligned(p, 8 * kWidth), &a, sizeof(a)); }
+inline void store(Scalar* p, Real a) { __builtin_memcpy(__builtin_assume_aligned(p, kAligned), &a, sizeof(a)); }
+#ifdef ERGON_SINGLE
+// What is kept in doubles, rounded.
+inline Real load(const double* p) {
+#if ERGON_LANES == 1
+  return static_cast<float>(*p);
+#else
+  typedef double Wide __attribute__((vector_size(8 * ERGON_LANES)));
+  Wide a;
+  __builtin_memcpy(&a, __builtin_assume_aligned(p, 8 * kWidth < 64 ? 8 * kWidth : 64), sizeof(a));
+  return __builtin_convertvector(a, Real);
+#endif
+}
+#endif
 
 }  // namespace
 }  // namespace ergon::lanes

@@ -25,8 +25,8 @@ inline PlaneSvd plane_svd(Real m00, Real m01, Real m10, Real m11) {
   const Real x = (m00 * m00 + m10 * m10) - (m01 * m01 + m11 * m11);
   const Real y = 2 * (m00 * m01 + m10 * m11);
   const Real hypotenuse = x * x + y * y;
-  const Mask turned = less(splat(1e-290), hypotenuse);
-  const Real inverse = rsqrt(max(hypotenuse, splat(1e-290)));
+  const Mask turned = less(splat(kNegligible), hypotenuse);
+  const Real inverse = rsqrt(max(hypotenuse, splat(kNegligible)));
   const Real cos_2b = select(turned, abs(x) * inverse, splat(1)), sin_2b = select(turned, abs(y) * inverse, splat(0));
   const Real larger_squared = 0.5 + 0.5 * cos_2b;
   const Real inverse_larger = rsqrt(larger_squared);
@@ -37,8 +37,8 @@ inline PlaneSvd plane_svd(Real m00, Real m01, Real m10, Real m11) {
   r.sin_b = copysign(select(first, smaller, larger), y);
   const Real p0 = m00 * r.cos_b + m01 * r.sin_b, p1 = m10 * r.cos_b + m11 * r.sin_b;
   const Real squared = p0 * p0 + p1 * p1;
-  const Mask regular = less(splat(1e-290), squared);
-  const Real inverse_length = rsqrt(max(squared, splat(1e-290)));
+  const Mask regular = less(splat(kNegligible), squared);
+  const Real inverse_length = rsqrt(max(squared, splat(kNegligible)));
   r.cos_a = select(regular, p0 * inverse_length, splat(1));
   r.sin_a = select(regular, p1 * inverse_length, splat(0));
   r.s0 = r.cos_a * p0 + r.sin_a * p1;
@@ -55,7 +55,7 @@ inline PlaneSvd plane_svd(Real m00, Real m01, Real m10, Real m11) {
 inline Svd3 svd3(const Vector& f0, const Vector& f1, const Vector& f2) {
   Real size = max(max(abs(f0.x), abs(f0.y)), abs(f0.z));
   size = max(max(max(abs(f1.x), abs(f1.y)), abs(f1.z)), size);
-  size = max(max(max(max(abs(f2.x), abs(f2.y)), abs(f2.z)), size), splat(1e-290));
+  size = max(max(max(max(abs(f2.x), abs(f2.y)), abs(f2.z)), size), splat(kNegligible));
   const Real scale = 1 / size;
   const Vector g[3] = {scale * f0, scale * f1, scale * f2};
   const auto image = [&](const Vector& w) { return w.x * g[0] + w.y * g[1] + w.z * g[2]; };
@@ -70,7 +70,7 @@ inline Svd3 svd3(const Vector& f0, const Vector& f1, const Vector& f2) {
   const Vector m0 = image(v[0]), m1 = image(v[1]), m2 = image(v[2]);
   u[0] = select(isolated.highest, m0, cross(m1, m2));
   const Real squared = dot(u[0], u[0]);
-  u[0] = select(less(splat(1e-290), squared), rsqrt(max(squared, splat(1e-290))) * u[0],
+  u[0] = select(less(splat(kNegligible), squared), rsqrt(max(squared, splat(kNegligible))) * u[0],
                 Vector{splat(1), splat(0), splat(0)});
   frame(u[0], u[1], u[2]);
   const PlaneSvd r = plane_svd(dot(u[1], m1), dot(u[1], m2), dot(u[2], m1), dot(u[2], m2));

@@ -23,7 +23,7 @@ struct Svd1 {
 // a/|a|, or `otherwise` where a vanishes.
 inline Vector direction(const Vector& a, const Vector& otherwise) {
   const Real squared = dot(a, a);
-  return select(less(splat(1e-290), squared), rsqrt(max(squared, splat(1e-290))) * a, otherwise);
+  return select(less(splat(kNegligible), squared), rsqrt(max(squared, splat(kNegligible))) * a, otherwise);
 }
 
 // a without its component along the unit vector b.
@@ -31,7 +31,7 @@ inline Vector without(const Vector& a, const Vector& b) { return a + (-dot(a, b)
 
 inline Svd2 svd2(const Vector& f0, const Vector& f1) {
   Real size = max(max(abs(f0.x), abs(f0.y)), abs(f0.z));
-  size = max(max(max(max(abs(f1.x), abs(f1.y)), abs(f1.z)), size), splat(1e-290));
+  size = max(max(max(max(abs(f1.x), abs(f1.y)), abs(f1.z)), size), splat(kNegligible));
   const Real scale = 1 / size;
   const Vector g0 = scale * f0, g1 = scale * f1;
   // The longer column spans the plane with what of the other is normal to it; twice, so that rounding of the first time
@@ -51,7 +51,7 @@ inline Svd2 svd2(const Vector& f0, const Vector& f1) {
 }
 
 inline Svd1 svd1(const Vector& f) {
-  Real size = max(max(max(abs(f.x), abs(f.y)), abs(f.z)), splat(1e-290));
+  Real size = max(max(max(abs(f.x), abs(f.y)), abs(f.z)), splat(kNegligible));
   const Vector g = (1 / size) * f;
   Svd1 r;
   r.u[0] = direction(g, {splat(1), splat(0), splat(0)});

@@ -46,6 +46,30 @@ TEST_P(EveryEnergyIsAccurate, WithinItsCondition) {
 INSTANTIATE_TEST_SUITE_P(Catalogue, EveryEnergyIsAccurate, testing::ValuesIn(test::catalogue_names()),
                          [](const auto& info) { return test::name_of_test(info.param); });
 
+// The same of kernels over floats.
+TEST(SinglePrecision, IsAccurateWithinTheConditionToo) {
+  for (const char* name : {"stable_neo_hookean", "neo_hookean", "st_venant_kirchhoff", "fibre_reinforced", "spring",
+                           "discrete_shell_hinge"}) {
+    const Energy energy = find_energy(name);
+    const bool density = energy.kind == Energy::Kind::density;
+    AccuracyOptions options;
+    options.directions = 3;
+    options.single = true;
+    options.lanes = lanes::best_single_lanes();
+    options.largest = 1;  // exponentials of more are above all floats
+    if (!density) options.smallest = 1e-4;
+    const std::vector<Accuracy> all = measure_accuracy(energy, "", options);
+    EXPECT_GE(all.size(), density ? 12u : 5u) << "too few strains with a state";
+    for (const Accuracy& at : all) {
+      for (int entry = 0; entry < 3; ++entry)
+        EXPECT_LE(at.excess[entry], kBound) << energy.name << " strain " << at.strain << " entry " << entry;
+      if (at.strain <= 0.1 && density) {
+        EXPECT_LE(at.emitted[1].median, 16) << energy.name << " strain " << at.strain;
+      }
+    }
+  }
+}
+
 class AccuracyCommand : public CommandTest {
  protected:
   static double digits_lost(const std::string& text, double strain, const std::string& entry, const char* field) {
