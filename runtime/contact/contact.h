@@ -1,20 +1,45 @@
 #pragma once
-// What Newton's method asks of contact, whatever the shapes in contact are. It establishes that every state that is
-// evaluated has exactly the stencils that are within the activation distance there, and that no state between two
-// iterates is in penetration.
+// What Newton's method and a time step ask of contact, whatever the shapes in contact are. It establishes that every
+// state that is evaluated has exactly the stencils that are within the activation distance there, and that no state
+// between two iterates is in penetration.
 
 #include <Eigen/Core>
+#include <limits>
+#include <string>
+#include <vector>
 
 namespace ergon {
+
+struct ContactStatus {
+  bool reached = false;                                           // something was within dhat since begin_step
+  int active = 0;                                                 // pairs within dhat at the last set_active
+  int rubbing = 0;                                                // pairs with a friction force
+  double smallest_gap = std::numeric_limits<double>::infinity();  // m; +inf where nothing is near
+  double stiffness = 0;                                           // of the barriers, largest; in the unit of their law
+  double energy_added = 0;                                        // J, by changes of stiffness since begin_step
+};
+
+// Between two lags of friction: the sum of the changes of normal forces and the sum of these, N.
+struct FrictionChange {
+  double change = 0;
+  double sum = 0;
+  double fraction() const { return change == 0 ? 0 : sum > 0 ? change / sum : 1; }
+};
 
 class Contact {
  public:
   virtual ~Contact() = default;
 
+  // Before the solve of a step of dt seconds from (x, v): chooses the barriers' stiffness where it is still open.
+  virtual void begin_step(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& v, double dt) = 0;
+
+  // Normal forces at x become those of friction, which opposes the displacement from xlag within dt.
+  virtual FrictionChange lag_friction(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& xlag, double dt) = 0;
+
   // Gives the barrier potentials the stencils that are active at x. Called before each evaluation.
   virtual void set_active(const Eigen::Matrix3Xd& x) = 0;
 
-  // A fraction in (0, 1] such that x + t*direction is free of penetration for all t up to it.
+  // A fraction in [0, 1] such that x + t*direction is free of penetration for all t up to it.
   virtual double largest_step(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& direction) = 0;
 
   // The largest change of an active gap along the direction, as a fraction of that gap. Newton's method is near its
@@ -25,6 +50,12 @@ class Contact {
   // Called after each accepted iterate. True when the barrier's stiffness was changed, so that energies computed before
   // no longer compare.
   virtual bool adapt(const Eigen::Matrix3Xd& x) = 0;
+
+  virtual bool owns(int potential) const = 0;  // index in the system: its lags are set here
+  virtual bool has_friction() const = 0;       // some pair has a coefficient of friction
+  virtual ContactStatus status(const Eigen::Matrix3Xd& x) = 0;
+  // What was left out, "part: reason".
+  virtual std::vector<std::string> skipped() const = 0;
 };
 
 }  // namespace ergon

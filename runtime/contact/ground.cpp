@@ -218,8 +218,8 @@ bool GroundContact::adapt(const Eigen::Matrix3Xd& x) {
   return changed;
 }
 
-double GroundContact::lag_friction(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& xlag, double dt) {
-  double change = 0, sum = 0;
+FrictionChange GroundContact::lag_friction(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& xlag, double dt) {
+  FrictionChange result;
   for (Side& side : sides_) {
     if (side.friction < 0) continue;
     Eigen::VectorXd before = Eigen::VectorXd::Zero(x.cols());
@@ -229,9 +229,9 @@ double GroundContact::lag_friction(const Eigen::Matrix3Xd& x, const Eigen::Matri
     std::vector<double> start;
     for (int v : vertices_) {
       const double force = is_free(v) ? -side.kappa * barrier_slope(gap(side, x, v), side.ground.dhat) : 0;
-      change += std::abs(force - before[v]);
+      result.change += std::abs(force - before[v]);
       if (!(force > 0)) continue;
-      sum += force;
+      result.sum += force;
       found_.push_back(v);
       side.friction_force.push_back(force);
       start.insert(start.end(), xlag.col(v).begin(), xlag.col(v).end());
@@ -247,8 +247,7 @@ double GroundContact::lag_friction(const Eigen::Matrix3Xd& x, const Eigen::Matri
     friction.set_lag("xlag", start);
     friction.set_lag("dt", {dt});
   }
-  if (change == 0) return 0;
-  return sum > 0 ? change / sum : 1;
+  return result;
 }
 
 bool GroundContact::owns(int potential) const {
@@ -291,6 +290,21 @@ double GroundContact::largest_stiffness() const {
 }
 
 double GroundContact::energy_added() const { return energy_added_; }
+
+ContactStatus GroundContact::status(const Eigen::Matrix3Xd& x) {
+  return {reached_, active_count(), friction_count(), smallest_gap(x), largest_stiffness(), energy_added_};
+}
+
+std::vector<std::string> GroundContact::skipped() const {
+  std::vector<std::string> lines;
+  if (!reached_) lines.emplace_back("contact: no vertex came within dhat of the ground");
+  if (!has_friction()) {
+    lines.emplace_back("friction: no ground has a coefficient of friction");
+  } else if (friction_count() == 0) {
+    lines.emplace_back("friction: no vertex within dhat of the ground");
+  }
+  return lines;
+}
 
 std::vector<GroundContact::Force> GroundContact::forces(const Eigen::Matrix3Xd& x) const {
   std::vector<Force> forces;

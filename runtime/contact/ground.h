@@ -41,13 +41,8 @@ class GroundContact : public Contact {
   // Throws InputError when a free vertex is on or below a ground: the deepest one, its depth, and the remedy.
   void check_start(const Eigen::Matrix3Xd& x) const;
 
-  // Before the solve of a step of dt seconds from (x, v): chooses the barrier's stiffness where it is still open.
-  void begin_step(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& v, double dt);
-
-  // Normal forces at x (N) become those of friction, which opposes the displacement from xlag within dt. Returns the
-  // sum of the changes of force over the sum of forces: 0 when nothing changed.
-  double lag_friction(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& xlag, double dt);
-
+  void begin_step(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& v, double dt) override;
+  FrictionChange lag_friction(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& xlag, double dt) override;
   void set_active(const Eigen::Matrix3Xd& x) override;
   // Every vertex keeps at least a tenth of its present gap.
   double largest_step(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& direction) override;
@@ -55,15 +50,17 @@ class GroundContact : public Contact {
   // Doubles a stiffness that was not fixed when the smallest gap has come near the rounding of positions.
   bool adapt(const Eigen::Matrix3Xd& x) override;
 
-  bool owns(int potential) const;  // index in the system
-  bool has_friction() const;
-  bool reached() const { return reached_; }              // a vertex was within dhat in a state since begin_step
-  int active_count() const;                              // vertex-ground pairs within dhat at the last set_active
-  int friction_count() const;                            // pairs with a friction force
+  bool owns(int potential) const override;
+  bool has_friction() const override;
+  ContactStatus status(const Eigen::Matrix3Xd& x) override;
+  std::vector<std::string> skipped() const override;
+
+  bool reached() const { return reached_; }
+  int active_count() const;
+  int friction_count() const;
   double smallest_gap(const Eigen::Matrix3Xd& x) const;  // m, over all free vertices and grounds; +inf without any
   double stiffness(int ground) const;                    // N/m; 0 while open
   double largest_stiffness() const;
-  // J: barrier energy that changes of stiffness have added to the state at the start of the step, since begin_step.
   double energy_added() const;
   // Normal force per active pair at x: vertex, ground, N.
   struct Force {

@@ -18,6 +18,12 @@ constexpr double rounding_gradients = 4;    // a gradient of so many times its r
 constexpr double first_shift = 1e-8;        // of the mean diagonal
 constexpr double shift_growth = 10;
 constexpr int max_shifts = 20;
+constexpr double first_blend = 1.0 / 16;  // of projected Hessians, where those as they are do not serve
+constexpr double blend_growth = 4;        // from iterate to iterate
+constexpr double blend_decay = 2;
+constexpr double bold_fraction = 0.1;  // of a Newton step: less says that its Hessian was too soft
+
+double lowered(double blend) { return blend / blend_decay < first_blend ? 0 : blend / blend_decay; }
 
 struct Largest {
   double value = 0;
@@ -59,7 +65,9 @@ double mean_diagonal(const BlockMatrix& matrix) {
 
 NewtonResult Newton::minimise(System& system, Eigen::Matrix3Xd& x, const NewtonOptions& options, Contact* contact) {
   NewtonResult result;
-  projecting_ = !options.on_demand;
+  blend_ = 1;
+  if (options.prescribed.vertices && !follow(system, x, options, contact, result)) return result;
+  blend_ = options.on_demand ? 0 : 1;
   evaluate_value(system, x, contact, result);
   if (const std::string outside = unusable(result.evaluation); !outside.empty()) {
     result.reason = "the state at the start is outside " + outside;
@@ -74,6 +82,7 @@ NewtonResult Newton::minimise(System& system, Eigen::Matrix3Xd& x, const NewtonO
       result.reason = fmt::format(
           "{} Newton iterations did not reach the tolerance of {:.3g} m/s: the last step is {:.3g} m/s at vertex {}",
           result.iterations, options.tolerance, result.step_speed, worst.vertex);
+      result.worst_vertex = worst.vertex;
       return result;
     }
 
@@ -83,10 +92,15 @@ NewtonResult Newton::minimise(System& system, Eigen::Matrix3Xd& x, const NewtonO
     result.step_speed = largest_free_component(system, direction_).value / options.dt;
     if (result.iterations == 0) result.first_step_speed = result.step_speed;
 
+    const double used = blend_;
     const Progress progress = take_step(system, x, slope, options, contact, result);
     if (!progress.found) return result;
     ++result.iterations;
-    result.projected_iterations += projecting_ && options.projection != Projection::none;
+    if (options.on_demand) {
+      const bool bold = trial_.fraction < bold_fraction;
+      blend_ = bold ? std::min(1.0, std::max(first_blend, blend_growth * blend_)) : lowered(blend_);
+    }
+    result.projected_iterations += used > 0 && options.projection != Projection::none;
     if (contact && contact->adapt(x)) {
       evaluate_value(system, x, contact, result);
       continue;
@@ -173,9 +187,23 @@ bool Newton::finishes_with_same_factor(System& system, Eigen::Matrix3Xd& x, cons
 void Newton::evaluate_hessian(System& system, const Eigen::Matrix3Xd& x, const NewtonOptions& options,
                               NewtonResult& result) {
   const Stopwatch watch(result.seconds.evaluate);
-  result.evaluation = system.hessian(x, projecting_ ? options.projection : Projection::none, gradient_, matrix_);
-  result.indefinite += result.evaluation.indefinite;
+  if (blend_ < 1) {
+    result.evaluation = system.hessian(x, Projection::none, gradient_, as_it_is_);
+    matrix_ = as_it_is_;
+  }
+  if (blend_ > 0) {
+    result.evaluation = system.hessian(x, options.projection, gradient_, blend_ < 1 ? projected_ : matrix_);
+    if (blend_ < 1) blend(blend_);
+    result.indefinite += result.evaluation.indefinite;
+  }
   result.residual = largest_free_component(system, gradient_).value;
+}
+
+// matrix_ = as_it_is_ + part*(projected_ - as_it_is_).
+void Newton::blend(double part) {
+  const std::vector<double>&a = as_it_is_.values(), &b = projected_.values();
+  std::vector<double>& out = matrix_.values();
+  for (size_t i = 0; i < out.size(); ++i) out[i] = a[i] + part * (b[i] - a[i]);
 }
 
 void Newton::evaluate_value(System& system, const Eigen::Matrix3Xd& x, Contact* contact, NewtonResult& result) {
@@ -195,7 +223,7 @@ void Newton::evaluate_gradient(System& system, const Eigen::Matrix3Xd& x, Newton
 
 // The gradient alone may show that the next step is below the tolerance.
 bool Newton::certainly_converged(const System& system, const NewtonOptions& options, NewtonResult& result) const {
-  if (options.curvature.size() == 0 || !projecting_ || options.projection == Projection::none) return false;
+  if (options.curvature.size() == 0 || blend_ < 1 || options.projection == Projection::none) return false;
   const double bound = step_bound(system, gradient_, options.curvature) / options.dt;
   if (!(bound <= options.tolerance)) return false;
   result.step_speed = bound;
@@ -235,9 +263,13 @@ double Newton::find_direction(System& system, const Eigen::Matrix3Xd& x, const N
     if (!failed) {
       if (const std::optional<double> slope = solve_direction(system, result)) return *slope;
     }
-    if (!projecting_) {
-      projecting_ = true;
-      evaluate_hessian(system, x, options, result);
+    if (blend_ < 1) {
+      if (blend_ == 0) {
+        const Stopwatch watch(result.seconds.evaluate);
+        result.indefinite += system.hessian(x, options.projection, gradient_, projected_).indefinite;
+      }
+      blend_ = std::min(1.0, std::max(first_blend, blend_growth * blend_));
+      blend(blend_);
       continue;
     }
     ++result.shifts;
@@ -250,6 +282,7 @@ double Newton::find_direction(System& system, const Eigen::Matrix3Xd& x, const N
     if (system.block_of(v) != *failed / 3) continue;
     result.reason = fmt::format(
         "the Hessian has no positive pivot at vertex {}, even with {:.3g} N/m added to its diagonal", v, tried);
+    result.worst_vertex = v;
   }
   return 0;
 }
@@ -268,6 +301,7 @@ void Newton::give_up_line_search(System& system, const Eigen::Matrix3Xd& x, Cont
   result.reason = fmt::format(
       "no state along the Newton step is accepted after {} halvings, for {}; the step is {:.3g} m/s at vertex {}",
       trial_.halvings, trial_.rejected_by, result.step_speed, worst.vertex);
+  result.worst_vertex = worst.vertex;
 }
 
 }  // namespace ergon

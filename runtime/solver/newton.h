@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "runtime/contact/contact.h"
 #include "runtime/solver/line_search.h"
@@ -15,6 +16,12 @@
 
 namespace ergon {
 
+// Vertices without degrees of freedom that are to move while the others are solved for.
+struct Prescribed {
+  const std::vector<int>* vertices = nullptr;
+  const Eigen::Matrix3Xd* goal = nullptr;  // m, 3 x vertices of the system; only columns of `vertices` are read
+};
+
 struct NewtonOptions {
   // Converged when the largest component of the Newton step, divided by dt, is at most this and no active gap changes
   // by more than a tenth; the step is still taken.
@@ -22,11 +29,12 @@ struct NewtonOptions {
   double dt = 1;            // s; 1 makes the tolerance one of displacement, for statics
   int max_iterations = 200;
   Projection projection = Projection::clamp;
-  // Project on demand: minimisation starts with Hessians as they are, and projects them, from then on, as soon as their
-  // sum has no factor or gives no direction of descent.
-  // Source: Longva et al. 2023, Pitfalls of Projection: A study of Newton-type solvers for incremental potentials. Held
-  // against others as project-on-demand Newton in Fernandez-Fernandez, Loeschner, Bender 2026, Progressively Projected
-  // Newton's Method, CGF 45(2).
+  // Project on demand: Hessians are H + a*(P - H), H as they are and P projected. A minimisation starts with a = 0;
+  // where the sum has no factor or gives no direction of descent, or where the direction proves too bold, a grows up to
+  // 1, and it falls again where steps succeed. Near a minimum the sum of the H is definite, and only they converge
+  // quadratically. Source: Longva et al. 2023, Pitfalls of Projection: A study of Newton-type solvers for incremental
+  // potentials. Held against others as project-on-demand Newton in Fernandez-Fernandez, Loeschner, Bender 2026,
+  // Progressively Projected Newton's Method, CGF 45(2).
   bool on_demand = false;
   double sufficient_decrease = 1e-4;  // of the decrease that the gradient predicts
   int max_halvings = 60;
@@ -34,6 +42,8 @@ struct NewtonOptions {
   // Newton step without solving for it, which saves the last factorisation. Empty: not used. Only Hessians
   // that are projected have such a bound: it is not asked while they are left as they are.
   Eigen::VectorXd curvature;
+  // First brought to their goal, as far at a time as contact lets them; the others follow to first order.
+  Prescribed prescribed;
 };
 
 // Seconds by part.
@@ -48,7 +58,9 @@ struct NewtonSeconds {
 struct NewtonResult {
   bool converged = false;
   std::string reason;           // why not, with the place
-  int iterations = 0;           // Newton steps taken
+  int worst_vertex = -1;        // that place, where there is one
+  int iterations = 0;           // Newton steps taken, those of the prescribed motion included
+  int follow_iterations = 0;    // that moved what is prescribed
   double residual = 0;          // N, largest component of the gradient at x over free vertices
   double step_speed = 0;        // m/s, largest component of the last Newton step over dt, or the bound that replaced it
   double first_step_speed = 0;  // m/s, of the first Newton step
@@ -56,7 +68,7 @@ struct NewtonResult {
   int halvings = 0;
   int shifts = 0;  // factorisations repeated with a larger diagonal
   int factorisations = 0;
-  int projected_iterations = 0;  // with projected Hessians
+  int projected_iterations = 0;  // with Hessians projected, if in part
   int reused_factors = 0;        // last steps solved with the factor of the step before: not among the iterations
   long indefinite = 0;           // Hessians changed by projection, summed over iterations
   bool at_rounding = false;      // stopped where rounding, not the tolerance, ends the progress
@@ -82,9 +94,13 @@ class Newton {
     bool is_last = false;       // the step was below the tolerance
     bool is_quadratic = false;  // the energy fell by what the quadratic model foretold
   };
+  bool follow(System& system, Eigen::Matrix3Xd& x, const NewtonOptions& options, Contact* contact,
+              NewtonResult& result);
+  void add_pull(System& system, const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& way, double rate);
   void evaluate_value(System& system, const Eigen::Matrix3Xd& x, Contact* contact, NewtonResult& result);
   void evaluate_gradient(System& system, const Eigen::Matrix3Xd& x, NewtonResult& result);
   void evaluate_hessian(System& system, const Eigen::Matrix3Xd& x, const NewtonOptions& options, NewtonResult& result);
+  void blend(double part);
   double find_direction(System& system, const Eigen::Matrix3Xd& x, const NewtonOptions& options, NewtonResult& result);
   std::optional<double> solve_direction(System& system, NewtonResult& result);
   Progress take_step(System& system, Eigen::Matrix3Xd& x, double slope, const NewtonOptions& options, Contact* contact,
@@ -95,11 +111,13 @@ class Newton {
   void give_up_line_search(System& system, const Eigen::Matrix3Xd& x, Contact* contact, bool is_last,
                            NewtonResult& result);
 
-  bool projecting_ = true;  // Hessians of the present minimisation
+  double blend_ = 1;  // a of NewtonOptions::on_demand in the present iteration
   LinearSolver solver_;
-  BlockMatrix matrix_;  // kept, with its pattern, from call to call
+  BlockMatrix matrix_;                // kept, with its pattern, from call to call
+  BlockMatrix as_it_is_, projected_;  // of which matrix_ is a blend, while blend_ is between 0 and 1
   Eigen::Matrix3Xd gradient_;
   Eigen::Matrix3Xd direction_;
+  Eigen::Matrix3Xd moved_, moved_gradient_;
   Eigen::VectorXd right_side_;
   Eigen::VectorXd step_;
   LineSearchResult trial_;

@@ -48,8 +48,8 @@ void add(NewtonSeconds& sum, const NewtonSeconds& part) {
 
 }  // namespace
 
-TimeStepper::TimeStepper(System& system, Eigen::VectorXd mass, GroundContact* ground, StepOptions options)
-    : system_(&system), mass_(std::move(mass)), ground_(ground), options_(options) {
+TimeStepper::TimeStepper(System& system, Eigen::VectorXd mass, Contact* contact, StepOptions options, Script script)
+    : system_(&system), mass_(std::move(mass)), contact_(contact), options_(options), script_(std::move(script)) {
   const auto positive = [](const char* name, double value, const char* unit) {
     if (!(value > 0) || !std::isfinite(value)) {
       throw InputError(fmt::format("{} is {:g} {}; it must be above 0", name, value, unit));
@@ -71,8 +71,8 @@ StepRecord TimeStepper::step(State& state) {
 
     const Eigen::Matrix3Xd xhat = predict(state);
     set_lags(state.x, xhat);
-    if (ground_) begin_contact(state, record);
-    result = solve(state.x, x, record);
+    if (contact_) begin_contact(state, record);
+    result = solve(state, x, record);
     record.accepted = result.converged || (options_.accept_unconverged && result.iterations > 0);
     if (record.accepted) advance(state, x);
   }
@@ -93,7 +93,7 @@ void TimeStepper::set_lags(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& xh
   lagged_dt_.resize(static_cast<size_t>(system_->potential_count()), 0);
   for (int i = 0; i < system_->potential_count(); ++i) {
     Potential& potential = system_->potential(i);
-    if (ground_ && ground_->owns(i)) continue;
+    if (contact_ && contact_->owns(i)) continue;
     double& lagged_dt = lagged_dt_[static_cast<size_t>(i)];
     if (lagged_dt != options_.dt && has_lag(potential.kernel(), "dt")) potential.set_lag("dt", {options_.dt});
     lagged_dt = options_.dt;
@@ -105,12 +105,12 @@ void TimeStepper::set_lags(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& xh
 
 void TimeStepper::begin_contact(const State& state, StepRecord& record) {
   const Stopwatch watch(record.seconds.contact);
-  ground_->begin_step(state.x, state.v, options_.dt);
-  ground_->lag_friction(state.x, state.x, options_.dt);
+  contact_->begin_step(state.x, state.v, options_.dt);
+  contact_->lag_friction(state.x, state.x, options_.dt);
 }
 
 // Newton, repeated with new normal forces of friction until these have settled.
-NewtonResult TimeStepper::solve(const Eigen::Matrix3Xd& start, Eigen::Matrix3Xd& x, StepRecord& record) {
+NewtonResult TimeStepper::solve(const State& state, Eigen::Matrix3Xd& x, StepRecord& record) {
   NewtonOptions newton;
   newton.dt = options_.dt;
   newton.tolerance = options_.tolerance;
@@ -118,13 +118,19 @@ NewtonResult TimeStepper::solve(const Eigen::Matrix3Xd& start, Eigen::Matrix3Xd&
   newton.projection = options_.projection;
   newton.on_demand = options_.project_on_demand;
   newton.curvature = mass_ / (options_.dt * options_.dt);
-  const bool friction = ground_ && ground_->has_friction();
+  if (!script_.empty()) {
+    goal_ = state.x;
+    script_.place(state.time + options_.dt, goal_);
+    newton.prescribed = {&script_.vertices(), &goal_};
+  }
+  const bool friction = contact_ && contact_->has_friction();
 
   NewtonResult result;
   while (true) {
-    result = newton_.minimise(*system_, x, newton, ground_);
+    result = newton_.minimise(*system_, x, newton, contact_);
     ++record.friction_iterations;
     record.newton_iterations += result.iterations;
+    record.follow_iterations += result.follow_iterations;
     record.factorisations += result.factorisations;
     record.halvings += result.halvings;
     record.shifts += result.shifts;
@@ -133,7 +139,7 @@ NewtonResult TimeStepper::solve(const Eigen::Matrix3Xd& start, Eigen::Matrix3Xd&
     if (!friction || !result.converged) break;
 
     const Stopwatch watch(record.seconds.contact);
-    record.friction_change = ground_->lag_friction(x, start, options_.dt);
+    record.friction_change = contact_->lag_friction(x, state.x, options_.dt).fraction();
     if (record.friction_change <= options_.friction_tolerance) break;
     if (record.friction_iterations >= options_.friction_lag_iterations) break;
   }
@@ -153,24 +159,26 @@ void TimeStepper::report(const State& state, const NewtonResult& result, StepRec
   record.time = state.time;
   record.converged = result.converged;
   record.reason = result.reason;
+  record.worst_vertex = result.worst_vertex;
   record.residual = result.residual;
   record.step_speed = result.step_speed;
   record.skipped = skipped_parts();
   record.energy = record.accepted ? energies_of(result.evaluation, state.v) : energies(state);
-  if (ground_) {
-    record.contacts = ground_->active_count();
-    record.smallest_gap = ground_->smallest_gap(state.x);
-    record.barrier_stiffness = ground_->largest_stiffness();
-    record.energy_added = ground_->energy_added();
+  if (contact_) {
+    const ContactStatus status = contact_->status(state.x);
+    record.contacts = status.active;
+    record.smallest_gap = status.smallest_gap;
+    record.barrier_stiffness = status.stiffness;
+    record.energy_added = status.energy_added;
   }
 }
 
 Energies TimeStepper::energies(const State& state) {
   set_lags(state.x, predict(state));
-  if (ground_) {
-    ground_->begin_step(state.x, state.v, options_.dt);
-    ground_->lag_friction(state.x, state.x, options_.dt);
-    ground_->set_active(state.x);
+  if (contact_) {
+    contact_->begin_step(state.x, state.v, options_.dt);
+    contact_->lag_friction(state.x, state.x, options_.dt);
+    contact_->set_active(state.x);
   }
   return energies_of(system_->value(state.x), state.v);
 }
@@ -197,16 +205,9 @@ Energies TimeStepper::energies_of(const Evaluation& evaluation, const Eigen::Mat
 
 std::vector<std::string> TimeStepper::skipped_parts() const {
   std::vector<std::string> skipped = system_->skipped();
-  if (!ground_) {
-    skipped.emplace_back("contact: the scene has no ground");
-    return skipped;
-  }
-  if (!ground_->reached()) skipped.emplace_back("contact: no vertex came within dhat of the ground");
-  if (!ground_->has_friction()) {
-    skipped.emplace_back("friction: no ground has a coefficient of friction");
-  } else if (ground_->friction_count() == 0) {
-    skipped.emplace_back("friction: no vertex within dhat of the ground");
-  }
+  const std::vector<std::string> more =
+      contact_ ? contact_->skipped() : std::vector<std::string>{"contact: nothing in the scene may touch"};
+  skipped.insert(skipped.end(), more.begin(), more.end());
   return skipped;
 }
 

@@ -14,7 +14,8 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/contact/ground.h"
+#include "runtime/contact/contact.h"
+#include "runtime/script.h"
 #include "runtime/solver/newton.h"
 #include "runtime/system.h"
 
@@ -55,12 +56,14 @@ struct StepRecord {
   bool accepted = false;  // false: the state is as it was
   bool converged = false;
   std::string reason;  // why not
+  int worst_vertex = -1;
   long step = 0;       // number and time of the state after the step
   double time = 0;     // s
   double dt = 0;       // s
   int newton_iterations = 0;
-  double residual = 0;    // N
-  double step_speed = 0;  // m/s, against the tolerance
+  int follow_iterations = 0;  // of these, those that moved scripted vertices
+  double residual = 0;        // N
+  double step_speed = 0;      // m/s, against the tolerance
   int factorisations = 0;
   int halvings = 0;
   int shifts = 0;
@@ -69,7 +72,7 @@ struct StepRecord {
   double friction_change = 0;                                     // of the normal forces after the last solve, fraction
   int contacts = 0;                                               // pairs within dhat
   double smallest_gap = std::numeric_limits<double>::infinity();  // m
-  double barrier_stiffness = 0;                                   // N/m, largest
+  double barrier_stiffness = 0;                                   // largest
   double energy_added = 0;                                        // J, by changes of barrier stiffness
   Energies energy;
   StepSeconds seconds;
@@ -78,9 +81,10 @@ struct StepRecord {
 
 class TimeStepper {
  public:
-  // The system with all its potentials, inertia among them; mass: kg, per vertex; `ground` may be null. System and
-  // ground must outlive this. Throws InputError for a dt or tolerance that is not positive.
-  TimeStepper(System& system, Eigen::VectorXd mass, GroundContact* ground, StepOptions options);
+  // The system with all its potentials, inertia among them; mass: kg, per vertex; `contact` may be null. System and
+  // contact must outlive this. The vertices of `script` are fixed in the system and follow it. Throws InputError for a
+  // dt or tolerance that is not positive.
+  TimeStepper(System& system, Eigen::VectorXd mass, Contact* contact, StepOptions options, Script script = {});
 
   StepRecord step(State& state);
 
@@ -94,7 +98,7 @@ class TimeStepper {
   Eigen::Matrix3Xd predict(const State& state) const;
   void set_lags(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& xhat);
   void begin_contact(const State& state, StepRecord& record);
-  NewtonResult solve(const Eigen::Matrix3Xd& start, Eigen::Matrix3Xd& x, StepRecord& record);
+  NewtonResult solve(const State& state, Eigen::Matrix3Xd& x, StepRecord& record);
   void advance(State& state, const Eigen::Matrix3Xd& x) const;
   void report(const State& state, const NewtonResult& result, StepRecord& record);
   Energies energies_of(const Evaluation& evaluation, const Eigen::Matrix3Xd& v) const;
@@ -102,8 +106,10 @@ class TimeStepper {
 
   System* system_;
   Eigen::VectorXd mass_;
-  GroundContact* ground_;
+  Contact* contact_;
   StepOptions options_;
+  Script script_;
+  Eigen::Matrix3Xd goal_;  // m, of scripted vertices at the end of the step
   Newton newton_;
   std::vector<double> lagged_dt_;  // last dt given to each potential, so that an unchanged one stays untouched
 };

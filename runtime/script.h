@@ -1,0 +1,41 @@
+#pragma once
+// Vertices that follow a script: rigid motions through key frames. It establishes where they are at any time, free of
+// accumulated error: each state is made from the start.
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace ergon {
+
+// Linear in time between keys: the displacement of the centre, and the rotation vector about it (axis times angle, rad,
+// of any number of turns).
+struct ScriptKey {
+  double time = 0;                                      // s
+  Eigen::Vector3d translate = Eigen::Vector3d::Zero();  // m, from the start
+  Eigen::Vector3d rotate = Eigen::Vector3d::Zero();     // rad
+};
+
+class Script {
+ public:
+  // `start`: 3 x vertices of the system, of which those in `vertices` are read; keys in ascending order of time, before
+  // the first of which the motion goes from the start at time 0.
+  void add(std::vector<int> vertices, const Eigen::Matrix3Xd& start, const Eigen::Vector3d& center,
+           std::vector<ScriptKey> keys);
+
+  bool empty() const { return parts_.empty(); }
+  const std::vector<int>& vertices() const { return vertices_; }  // of all parts, in order of addition
+  // Puts the scripted vertices where they are at a time, s; leaves the others as they are.
+  void place(double time, Eigen::Matrix3Xd& x) const;
+
+ private:
+  struct Part {
+    std::vector<int> vertices;
+    Eigen::Matrix3Xd start;  // relative to the centre
+    Eigen::Vector3d center;
+    std::vector<ScriptKey> keys;
+  };
+  std::vector<Part> parts_;
+  std::vector<int> vertices_;
+};
+
+}  // namespace ergon
