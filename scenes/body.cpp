@@ -5,12 +5,14 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <filesystem>
+#include <numeric>
 #include <tuple>
 
 #include "runtime/error.h"
 #include "runtime/mesh/mesh_build.h"
 #include "runtime/mesh/mesh_import.h"
 #include "runtime/mesh/mesh_tools.h"
+#include "runtime/mesh/shapes.h"
 
 namespace ergon {
 namespace {
@@ -22,12 +24,32 @@ Eigen::Vector3d vector(const Vector3& v) { return {v[0], v[1], v[2]}; }
 
 std::string brackets(const Eigen::Vector3d& v) { return fmt::format("[{:.4g}, {:.4g}, {:.4g}]", v[0], v[1], v[2]); }
 
-Transform placing(const SceneObject& object) {
+Transform placing(const SceneShape& shape) {
   auto about = [&](size_t axis) {
-    return Eigen::AngleAxisd(object.rotate[axis], Eigen::Vector3d::Unit(static_cast<int>(axis)));
+    return Eigen::AngleAxisd(shape.rotate[axis], Eigen::Vector3d::Unit(static_cast<int>(axis)));
   };
   const Eigen::AngleAxisd rotation(about(2) * about(1) * about(0));
-  return {object.scale, rotation.axis(), rotation.angle(), vector(object.translate)};
+  return {shape.scale, rotation.axis(), rotation.angle(), vector(shape.translate)};
+}
+
+// The place of what a shape is made from, for messages.
+const Place& source_place(const SceneShape& shape) {
+  for (const char* key : {"mesh", "box", "sphere", "tube"})
+    if (shape.wrote(key)) return shape.at(key);
+  return shape.place;
+}
+
+const char* kind_of_source(const SceneShape& shape) {
+  return shape.box ? "box" : shape.sphere ? "sphere" : shape.tube ? "tube" : "mesh";
+}
+
+// A surface that is made or read, where it starts.
+Mesh placed_surface(const SceneShape& shape, const std::string& path) {
+  const Mesh surface = shape.sphere ? sphere_surface(shape.sphere->radius, shape.sphere->cuts)
+                       : shape.tube ? tube_surface(shape.tube->inner, shape.tube->outer, shape.tube->length,
+                                                   shape.tube->around, shape.tube->along)
+                                    : read_surface(path);
+  return transformed(surface, placing(shape));
 }
 
 double section_of(const SceneObject& object, int dimension) {
@@ -46,7 +68,7 @@ Mesh made_box(const SceneObject& object) {
 }
 
 Mesh filled_mesh(const SceneObject& object, const std::string& path) {
-  const Mesh surface = transformed(read_surface(path), placing(object));
+  const Mesh surface = placed_surface(object, path);
   const auto bounds = bounding_box(surface);
   const double volume = (bounds.col(1) - bounds.col(0)).prod();
   // A regular tetrahedron of edge a has the volume a^3/8.49.
@@ -82,7 +104,7 @@ void check_section(const SceneObject& object, Element element) {
                                                     kinds[dimension]));
     if (!(section_of(object, use) > 0) && dimension == use)
       throw SourceError(
-          object.at(object.box ? "element" : "mesh"),
+          object.box ? object.at("element") : source_place(object),
           fmt::format("{} cells make a {}: give its '{}' in {} (a closed surface in .obj, .stl or .ply is "
                       "filled)",
                       name_of(element), kinds[dimension], key, unit));
@@ -100,21 +122,23 @@ Mesh load_mesh(const SceneObject& object, const std::string& folder) {
     mesh = filled_mesh(object, path);
   if (object.element == "tet10" && mesh.element == Element::tet4) mesh = to_quadratic(mesh, Element::tet10);
   check_section(object, mesh.element);
-  mesh.source = object.box ? "box of object '" + object.name + "'" : path;
+  mesh.source = object.mesh.empty() ? fmt::format("{} of object '{}'", kind_of_source(object), object.name) : path;
   check_mesh(mesh);
   return mesh;
+}
+
+std::vector<int> selected_vertices(const BoxSelector& box, const SceneObject& object, const Mesh& mesh) {
+  const std::vector<int> inside = vertices_in_box(mesh, vector(box.min), vector(box.max));
+  if (!inside.empty()) return inside;
+  const auto bounds = bounding_box(mesh);
+  throw SourceError(box.place, fmt::format("this box holds no vertex of object '{}', which reaches from {} m to {} m",
+                                           object.name, brackets(bounds.col(0)), brackets(bounds.col(1))));
 }
 
 std::vector<int> fixed_vertices(const SceneObject& object, const Mesh& mesh) {
   std::vector<int> out;
   for (const BoxSelector& box : object.fixed) {
-    const std::vector<int> inside = vertices_in_box(mesh, vector(box.min), vector(box.max));
-    if (inside.empty()) {
-      const auto bounds = bounding_box(mesh);
-      throw SourceError(box.place,
-                        fmt::format("this box holds no vertex of object '{}', which reaches from {} m to {} m",
-                                    object.name, brackets(bounds.col(0)), brackets(bounds.col(1))));
-    }
+    const std::vector<int> inside = selected_vertices(box, object, mesh);
     out.insert(out.end(), inside.begin(), inside.end());
   }
   std::sort(out.begin(), out.end());
@@ -122,21 +146,42 @@ std::vector<int> fixed_vertices(const SceneObject& object, const Mesh& mesh) {
   return out;
 }
 
+// A vertex follows one script at most.
+std::vector<BodyScript> scripts_of(const SceneObject& object, const Mesh& mesh) {
+  std::vector<BodyScript> out;
+  std::vector<char> taken(static_cast<size_t>(mesh.vertices()), 0);
+  for (const ScriptedBox& box : object.scripted) {
+    out.push_back({selected_vertices(box, object, mesh), vector(box.center), box.motion});
+    for (const int v : out.back().vertices) {
+      if (taken[static_cast<size_t>(v)] != 0)
+        throw SourceError(box.place,
+                          fmt::format("this box holds vertices of object '{}' that another script moves", object.name));
+      taken[static_cast<size_t>(v)] = 1;
+    }
+  }
+  return out;
+}
+
+void order(Body& body) {
+  ReorderedMesh reordered = spatial_order(body.mesh);
+  body.ordered = std::move(reordered.mesh);
+  body.vertex_from = std::move(reordered.vertex_from);
+}
+
 }  // namespace
 
 Body load_body(const SceneObject& object, const std::string& folder) {
   Body body;
   body.name = object.name;
-  const Place& place = object.box ? object.at("box") : object.at("mesh");
+  const Place& place = source_place(object);
   try {
     body.mesh = load_mesh(object, folder);
   } catch (const InputError& bad) {
     throw SourceError(place, fmt::format("object '{}': {}", object.name, bad.what()));
   }
-  ReorderedMesh reordered = spatial_order(body.mesh);
-  body.ordered = std::move(reordered.mesh);
-  body.vertex_from = std::move(reordered.vertex_from);
+  order(body);
   body.fixed = fixed_vertices(object, body.ordered);
+  body.scripts = scripts_of(object, body.ordered);
   body.quadrature = object.quadrature;
   body.section = section_of(object, dimension_of(body.mesh.element));
   if (dimension_of(body.ordered.element) < 2)
@@ -146,6 +191,29 @@ Body load_body(const SceneObject& object, const std::string& folder) {
       body.surface.insert(body.surface.end(), triangle.begin(), triangle.end());
   std::sort(body.surface.begin(), body.surface.end());
   body.surface.erase(std::unique(body.surface.begin(), body.surface.end()), body.surface.end());
+  return body;
+}
+
+Body load_obstacle(const SceneObstacle& obstacle, const std::string& folder) {
+  Body body;
+  body.name = obstacle.name;
+  const std::string path = (std::filesystem::path(folder) / obstacle.mesh).lexically_normal().string();
+  try {
+    if (obstacle.box)
+      body.mesh = transformed(box_hexes(vector(obstacle.box->size), obstacle.box->cells), placing(obstacle));
+    else
+      body.mesh = obstacle.mesh.ends_with(".msh") ? transformed(read_mesh(path), placing(obstacle))
+                                                  : placed_surface(obstacle, path);
+    body.mesh.source =
+        obstacle.mesh.empty() ? fmt::format("{} of obstacle '{}'", kind_of_source(obstacle), obstacle.name) : path;
+    check_mesh(body.mesh);
+  } catch (const InputError& bad) {
+    throw SourceError(source_place(obstacle), fmt::format("obstacle '{}': {}", obstacle.name, bad.what()));
+  }
+  order(body);
+  body.fixed.resize(static_cast<size_t>(body.ordered.vertices()));
+  std::iota(body.fixed.begin(), body.fixed.end(), 0);
+  if (!obstacle.motion.empty()) body.scripts.push_back({body.fixed, vector(obstacle.center), obstacle.motion});
   return body;
 }
 

@@ -10,12 +10,20 @@
 
 namespace ergon {
 
+// Vertices of a body that a script moves about a centre (m).
+struct BodyScript {
+  std::vector<int> vertices;  // of `ordered`
+  Eigen::Vector3d center;
+  std::vector<MotionKey> keys;
+};
+
 struct Body {
   std::string name;
-  Mesh mesh;                      // in the order of its source, moved to its start
-  Mesh ordered;                   // the same in the order in which it is computed
-  std::vector<int> vertex_from;   // vertex i of `ordered` is vertex vertex_from[i] of `mesh`
-  std::vector<int> fixed;         // vertices of `ordered` that never move
+  Mesh mesh;                     // in the order of its source, moved to its start
+  Mesh ordered;                  // the same in the order in which it is computed
+  std::vector<int> vertex_from;  // vertex i of `ordered` is vertex vertex_from[i] of `mesh`
+  std::vector<int> fixed;        // vertices of `ordered` that never move
+  std::vector<BodyScript> scripts;
   std::vector<int> surface;       // vertices of `ordered` that may touch something
   std::optional<int> quadrature;  // exactness; absent: the element's own
   double section = 1;             // rest volume per measure of its cells: 1, a membrane's thickness (m), a line's (m^2)
@@ -25,5 +33,8 @@ struct Body {
 // `folder` is what paths are relative to. Throws SourceError at the scene's line for whatever the mesh functions
 // refuse: missing and broken files, open surfaces, inverted or flat cells; and for a `fixed` box that holds no vertex.
 Body load_body(const SceneObject& object, const std::string& folder);
+
+// The surface of an obstacle, none of whose vertices is free; it has no mass and no laws.
+Body load_obstacle(const SceneObstacle& obstacle, const std::string& folder);
 
 }  // namespace ergon

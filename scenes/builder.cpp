@@ -11,8 +11,11 @@
 #include "runtime/mesh/element_faces.h"
 #include "runtime/mesh/mesh_tools.h"
 #include "runtime/solver/stopwatch.h"
+#include "scenes/build_contact.h"
 #include "scenes/laws.h"
 #include "scenes/start_check.h"
+#include "scenes/surface_check.h"
+#include "scenes/used_kernels.h"
 #include "symbolic/checks.h"
 
 namespace ergon {
@@ -30,8 +33,7 @@ struct UsedLaw {
 struct WorldLaws {
   const Energy* inertia = nullptr;
   const Energy* gravity = nullptr;
-  const Energy* barrier = nullptr;
-  const Energy* friction = nullptr;
+  ContactLaws contact;
 };
 
 WorldLaws world_laws(const Scene& scene, Laws& laws, std::vector<std::string>& skipped) {
@@ -42,15 +44,7 @@ WorldLaws world_laws(const Scene& scene, Laws& laws, std::vector<std::string>& s
     skipped.push_back("gravity: it is zero in this scene, no kernel loaded");
   else
     out.gravity = &laws.get("gravity", whole);
-  if (scene.grounds.empty()) {
-    skipped.push_back("log_barrier, friction: there is no ground, no kernels loaded");
-    return out;
-  }
-  out.barrier = &laws.get("log_barrier:half_space", whole);
-  if (std::any_of(scene.grounds.begin(), scene.grounds.end(), [](const SceneGround& g) { return g.mu > 0; }))
-    out.friction = &laws.get("friction", whole);
-  else
-    skipped.push_back("friction: no ground has a coefficient of friction 'mu', no kernel loaded");
+  out.contact = contact_laws(scene, laws, skipped);
   return out;
 }
 
@@ -78,24 +72,6 @@ std::vector<std::string> law_warnings(const Scene& scene, const std::vector<std:
   }
   return out;
 }
-
-// Each kernel once, in the order of first use.
-class Kernels {
- public:
-  void want(const Energy* energy) {
-    if (energy != nullptr && std::find(wanted_.begin(), wanted_.end(), energy) == wanted_.end())
-      wanted_.push_back(energy);
-  }
-  void load(const KernelSource& source) { loaded_ = source(wanted_); }
-  const Kernel& get(const Energy& energy) const {
-    const auto found = std::find(wanted_.begin(), wanted_.end(), &energy);
-    return loaded_.at(static_cast<size_t>(found - wanted_.begin()));
-  }
-
- private:
-  std::vector<const Energy*> wanted_;
-  std::vector<Kernel> loaded_;
-};
 
 std::vector<int> edges_of(const Body& body) {
   const int per_cell = nodes_of(body.ordered.element);
@@ -151,8 +127,14 @@ void check_geometries(const Scene& scene, const std::vector<std::vector<UsedLaw>
   }
 }
 
-void add_object(const SceneObject& object, const std::vector<UsedLaw>& laws, const Body& body, const Kernels& kernels,
-                BuiltScene& out) {
+// Those before the first obstacle's.
+int vertices_of_objects(const Scene& scene, const std::vector<Body>& bodies) {
+  const Body& last = bodies[scene.objects.size() - 1];
+  return last.first_vertex + last.ordered.vertices();
+}
+
+void add_object(const SceneObject& object, const std::vector<UsedLaw>& laws, const Body& body,
+                const UsedKernels& kernels, BuiltScene& out) {
   for (size_t i = 0; i < laws.size(); ++i) try {
       out.system->add(object_potential(laws[i], kernels.get(*laws[i].energy), body, out.start.x, out.mass));
     } catch (const InputError& bad) {
@@ -160,32 +142,35 @@ void add_object(const SceneObject& object, const std::vector<UsedLaw>& laws, con
     }
 }
 
-void add_world(const Scene& scene, const WorldLaws& world, const Kernels& kernels, BuiltScene& out) {
+void add_world(const Scene& scene, const WorldLaws& world, const UsedKernels& kernels, BuiltScene& out) {
   const Eigen::Matrix3Xd& X = out.start.x;
-  const int n = out.system->vertices();
+  const int n = vertices_of_objects(scene, out.bodies);
   out.system->add(Potential::on_stencils("inertia", kernels.get(*world.inertia), points_of(0, n), X, {},
                                          point_masses(*world.inertia, out.mass, 0, n)));
   if (world.gravity != nullptr)
     out.system->add(Potential::on_stencils("gravity", kernels.get(*world.gravity), points_of(0, n), X,
                                            {{"g", {scene.gravity.begin(), scene.gravity.end()}}},
                                            point_masses(*world.gravity, out.mass, 0, n)));
-  if (world.barrier == nullptr) return;
-  GroundLaws laws;
-  laws.barrier = kernels.get(*world.barrier);
-  if (world.friction != nullptr) laws.friction = kernels.get(*world.friction);
-  std::vector<Ground> grounds;
-  for (const SceneGround& g : scene.grounds)
-    grounds.push_back({vector(g.normal), g.height, g.dhat, g.mu, g.epsv, g.stiffness.value_or(0)});
-  std::vector<int> surface;
-  for (const Body& body : out.bodies)
-    for (int vertex : body.surface) surface.push_back(body.first_vertex + vertex);
-  out.ground = std::make_unique<GroundContact>(*out.system, grounds, laws, surface, X, out.mass, vector(scene.gravity));
+  add_contact(scene, world.contact, kernels, out);
+}
+
+// A Newton step of this part of the speed below which friction is static tells sliding from sticking where the force
+// exceeds that of friction by (part)^2 of it, a quarter of a percent: near the limit of static friction, at w*epsv, the
+// step is (excess + (1 - w)^2)/(2*(1 - w))*epsv, at least sqrt(excess)*epsv.
+constexpr double friction_tolerance = 0.05;
+
+double tolerance(const Scene& scene) {
+  double out = scene.solver.tolerance;
+  for (const SceneGround& ground : scene.grounds)
+    if (ground.mu > 0) out = std::min(out, friction_tolerance * ground.epsv);
+  if (scene.contact && has_friction(*scene.contact)) out = std::min(out, friction_tolerance * scene.contact->epsv);
+  return out;
 }
 
 StepOptions step_options(const Scene& scene) {
   StepOptions out;
   out.dt = scene.time.dt;
-  out.tolerance = scene.solver.tolerance;
+  out.tolerance = tolerance(scene);
   out.max_iterations = scene.solver.max_iterations;
   out.friction_lag_iterations = scene.solver.friction_iterations;
   out.friction_tolerance = scene.solver.friction_tolerance;
@@ -197,6 +182,14 @@ StepOptions step_options(const Scene& scene) {
   return out;
 }
 
+void add_script(const BodyScript& script, int first_vertex, BuiltScene& out) {
+  std::vector<int> vertices = script.vertices;
+  for (int& vertex : vertices) vertex += first_vertex;
+  std::vector<ScriptKey> keys;
+  for (const MotionKey& key : script.keys) keys.push_back({key.time, vector(key.translate), vector(key.rotate)});
+  out.script.add(std::move(vertices), out.start.x, script.center, std::move(keys));
+}
+
 // All bodies one after the other: positions, masses, velocities, fixed vertices.
 void lay_out(const Scene& scene, BuiltScene& out) {
   int vertices = 0;
@@ -205,33 +198,44 @@ void lay_out(const Scene& scene, BuiltScene& out) {
     vertices += body.ordered.vertices();
   }
   out.start.x.resize(3, vertices);
-  out.start.v.resize(3, vertices);
-  out.mass.resize(vertices);
+  out.start.v.setZero(3, vertices);
+  out.mass.setZero(vertices);
   std::vector<char> fixed(static_cast<size_t>(vertices), 0);
   for (size_t i = 0; i < out.bodies.size(); ++i) {
     const Body& body = out.bodies[i];
     const int first = body.first_vertex, count = body.ordered.vertices();
     out.start.x.middleCols(first, count) = body.ordered.X;
-    out.start.v.middleCols(first, count).colwise() = vector(scene.objects[i].velocity);
-    out.mass.segment(first, count) = lumped_masses(body.ordered, scene.objects[i].density * body.section);
-    for (int vertex : body.fixed) {
-      fixed[static_cast<size_t>(first + vertex)] = 1;
-      out.start.v.col(first + vertex).setZero();
+    if (i < scene.objects.size()) {
+      out.start.v.middleCols(first, count).colwise() = vector(scene.objects[i].velocity);
+      out.mass.segment(first, count) = lumped_masses(body.ordered, scene.objects[i].density * body.section);
+    }
+    const auto hold = [&](const std::vector<int>& vertices) {
+      for (int vertex : vertices) {
+        fixed[static_cast<size_t>(first + vertex)] = 1;
+        out.start.v.col(first + vertex).setZero();
+      }
+    };
+    hold(body.fixed);
+    for (const BodyScript& script : body.scripts) {
+      hold(script.vertices);
+      add_script(script, first, out);
     }
   }
   if (std::find(fixed.begin(), fixed.end(), 0) == fixed.end())
-    throw SourceError(scene.objects.front().at("fixed"), "every vertex of the scene is fixed: nothing can move");
+    throw SourceError(scene.objects.front().at(scene.objects.front().wrote("fixed") ? "fixed" : "scripted"),
+                      "every vertex of the scene is fixed: nothing can move");
   out.system = std::make_unique<System>(vertices);
   out.system->set_fixed(fixed);
 }
 
 }  // namespace
 
-BuiltScene build_scene(const Scene& scene, const Catalogue& catalogue, const KernelSource& kernel_source) {
+BuiltScene build_scene(const Scene& scene, const Catalogue& catalogue, const KernelSource& kernel_source,
+                       const FaultReport& report) {
   BuiltScene out;
   const std::string folder = std::filesystem::path(scene.file).parent_path().string();
   Laws laws(catalogue, folder);
-  Kernels kernels;
+  UsedKernels kernels;
   std::vector<std::vector<UsedLaw>> used;
   WorldLaws world;
   {
@@ -243,6 +247,7 @@ BuiltScene build_scene(const Scene& scene, const Catalogue& catalogue, const Ker
   {
     Stopwatch watch(out.seconds.meshes);
     for (const SceneObject& object : scene.objects) out.bodies.push_back(load_body(object, folder));
+    for (const SceneObstacle& obstacle : scene.obstacles) out.bodies.push_back(load_obstacle(obstacle, folder));
     check_geometries(scene, used, out.bodies);
     lay_out(scene, out);
     check_start(scene, out.bodies);
@@ -251,13 +256,16 @@ BuiltScene build_scene(const Scene& scene, const Catalogue& catalogue, const Ker
     Stopwatch watch(out.seconds.kernels);
     for (const auto& object : used)
       for (const UsedLaw& law : object) kernels.want(law.energy);
-    for (const Energy* law : {world.inertia, world.gravity, world.barrier, world.friction}) kernels.want(law);
+    kernels.want(world.inertia);
+    kernels.want(world.gravity);
+    want_kernels(world.contact, kernels);
     kernels.load(kernel_source);
   }
   {
     Stopwatch watch(out.seconds.setup);
     for (size_t i = 0; i < used.size(); ++i) add_object(scene.objects[i], used[i], out.bodies[i], kernels, out);
     add_world(scene, world, kernels, out);
+    if (out.surfaces != nullptr) check_surface_start(scene, out, report);
   }
   out.step = step_options(scene);
   // An end that is a multiple of dt up to rounding takes no step more.

@@ -8,8 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "runtime/contact/contacts.h"
 #include "runtime/contact/ground.h"
+#include "runtime/contact/surface_contact.h"
+#include "runtime/output/vtu.h"
 #include "runtime/potential.h"
+#include "runtime/script.h"
 #include "runtime/solver/time_step.h"
 #include "runtime/system.h"
 #include "scenes/body.h"
@@ -19,8 +23,12 @@
 
 namespace ergon {
 
-// Compiles or loads the kernels of energies without cases, in their order.
-using KernelSource = std::function<std::vector<Kernel>(const std::vector<const Energy*>& energies)>;
+struct KernelRequest {
+  const Energy* energy = nullptr;
+  std::string case_name;  // "" where the energy has no cases
+};
+// Compiles or loads kernels, in their order.
+using KernelSource = std::function<std::vector<Kernel>(const std::vector<KernelRequest>& requests)>;
 
 struct BuildSeconds {
   double energies = 0;  // read and checked
@@ -31,10 +39,13 @@ struct BuildSeconds {
 };
 
 struct BuiltScene {
-  std::vector<Body> bodies;
+  std::vector<Body> bodies;  // objects, then obstacles
   std::unique_ptr<System> system;
-  std::unique_ptr<GroundContact> ground;  // null without grounds
-  Eigen::VectorXd mass;                   // kg, per vertex
+  std::unique_ptr<Contacts> contacts;  // null where nothing may touch
+  GroundContact* ground = nullptr;     // part of contacts; null without grounds
+  SurfaceContact* surfaces = nullptr;  // part of contacts; null without [contact]
+  Script script;
+  Eigen::VectorXd mass;  // kg, per vertex
   State start;
   StepOptions step;
   long steps = 0;
@@ -45,8 +56,12 @@ struct BuiltScene {
   BuildSeconds seconds;
 };
 
+// Given a mesh of what intersects at the start, before the error that says so.
+using FaultReport = std::function<void(const Frame& faults)>;
+
 // Throws SourceError at the scene's line, or in an energy file, for everything that does not fit together; all of it
 // that can be found without compiling is found before a kernel is asked for. `scene` need not outlive the result.
-BuiltScene build_scene(const Scene& scene, const Catalogue& catalogue, const KernelSource& kernels);
+BuiltScene build_scene(const Scene& scene, const Catalogue& catalogue, const KernelSource& kernels,
+                       const FaultReport& report = {});
 
 }  // namespace ergon

@@ -12,6 +12,7 @@
 #include "runtime/output/report.h"
 #include "runtime/solver/stopwatch.h"
 #include "scenes/frames.h"
+#include "scenes/surface_check.h"
 
 namespace ergon {
 namespace fs = std::filesystem;
@@ -93,6 +94,21 @@ RunSummary summary_of_start(const Scene& scene, const BuiltScene& built, double 
   return out;
 }
 
+// "" when the step may stand.
+std::string failure_of(const StepRecord& record, const State& state, const BuiltScene& built, bool verify) {
+  if (!record.accepted) {
+    const std::string where =
+        record.worst_vertex < 0 ? "" : fmt::format(" ({})", vertex_text(built, record.worst_vertex));
+    return fmt::format("step {} (to {:.6g} s) failed: {}{}", state.step + 1, state.time + built.step.dt, record.reason,
+                       where);
+  }
+  if (!verify || built.surfaces == nullptr) return "";
+  const SurfaceFaults faults = find_surface_faults(built, state.x);
+  if (faults.none()) return "";
+  return fmt::format("after step {} ({:.6g} s) surfaces intersect: {}", state.step, state.time,
+                     to_text(faults, built, state.x));
+}
+
 long peak_memory() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -122,18 +138,18 @@ RunSummary run_scene(const Scene& scene, BuiltScene& built, const RunOptions& op
     output = std::make_unique<Output>(scene, built, options.folder);
     output->state(state);
   }
-  TimeStepper stepper(*built.system, built.mass, built.ground.get(), built.step);
+  TimeStepper stepper(*built.system, built.mass, built.contacts.get(), built.step, built.script);
   RunSummary summary = summary_of_start(scene, built, stepper.energies(state).total);
   while (state.step < built.steps && summary.failure.empty()) {
     if (options.stop && options.stop()) {
       summary.stopped = true;
       break;
     }
+    const State before = options.verify ? state : State{};
     const StepRecord record = stepper.step(state);
     add_step(summary, record);
-    if (!record.accepted)
-      summary.failure =
-          fmt::format("step {} (to {:.6g} s) failed: {}", state.step + 1, state.time + built.step.dt, record.reason);
+    summary.failure = failure_of(record, state, built, options.verify);
+    if (options.verify && record.accepted && !summary.failure.empty()) state = before;
     {
       Stopwatch watch(output_seconds);
       output->step(record);

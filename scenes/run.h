@@ -18,6 +18,7 @@ struct RunOptions {
   // Asked before each step; true ends the run there.
   std::function<bool()> stop;
   State* last_state = nullptr;  // receives the last good state
+  bool verify = false;          // test all surfaces for intersections after every step, in exact arithmetic
 };
 
 // The folder of the scene's output unless another is asked for: as the scene says, or out/ and the name of its file.
@@ -28,7 +29,8 @@ void prepare_output(const std::string& folder);
 
 // Writes into the folder: NAME.pvd and NAME_frames/ (unless the scene wants no frames), report.jsonl with one line per
 // step, summary.json. A step that fails ends the run: the summary's `failure` says which step and why, and the last
-// good state is written as a frame. Throws OutputError when a file cannot be written.
+// good state is written as a frame; likewise a step after which surfaces intersect, with `verify`. Throws OutputError
+// when a file cannot be written.
 RunSummary run_scene(const Scene& scene, BuiltScene& built, const RunOptions& options);
 
 }  // namespace ergon

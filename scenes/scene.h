@@ -60,22 +60,82 @@ struct BoxSource : Located {
   std::array<int, 3> cells = {1, 1, 1};
 };
 
-struct SceneObject : Located {
+struct SphereSource : Located {
+  double radius = 0;  // m
+  int cuts = 8;       // of each edge of an icosahedron
+};
+
+struct TubeSource : Located {
+  double inner = 0;   // m, radius
+  double outer = 0;   // m, radius
+  double length = 0;  // m, along x
+  int around = 32;    // cells
+  int along = 16;
+};
+
+// Where the shape of an object or obstacle comes from and where it starts. One of the first four is given.
+struct SceneShape : Located {
   std::string name;
-  std::string mesh;              // path relative to the scene file; "" when `box` is given
-  std::optional<BoxSource> box;  // one corner at the origin before the object is moved
-  double max_edge = 0;           // m, of the tetrahedra that fill a surface; 0: continued from the surface
-  std::string element = "tet4";
-  std::optional<int> quadrature;  // exactness; absent: the element's own
+  std::string mesh;              // path relative to the scene file
+  std::optional<BoxSource> box;  // one corner at the origin before the shape is moved
+  std::optional<SphereSource> sphere;
+  std::optional<TubeSource> tube;
   double scale = 1;
   Vector3 rotate = {0, 0, 0};     // rad, about x, then y, then z (fixed axes)
   Vector3 translate = {0, 0, 0};  // m
+  double offset = 0;              // m, that other surfaces keep from this one, beside their own
+  bool touches_itself = true;
+};
+
+// A state of a scripted motion; linear in between.
+struct MotionKey : Located {
+  double time = 0;                // s
+  Vector3 translate = {0, 0, 0};  // m, from the start
+  Vector3 rotate = {0, 0, 0};     // rad, a rotation vector: its direction is the axis, its length the angle
+};
+
+// Vertices in a box that follow a script.
+struct ScriptedBox : BoxSelector {
+  Vector3 center = {0, 0, 0};  // m, that rotations are about; moves along
+  std::vector<MotionKey> motion;
+};
+
+struct SceneObject : SceneShape {
+  double max_edge = 0;  // m, of the tetrahedra that fill a surface; 0: continued from the surface
+  std::string element = "tet4";
+  std::optional<int> quadrature;  // exactness; absent: the element's own
   double density = 0;             // kg/m^3
   double thickness = 0;           // m, of a membrane
   double cross_section = 0;       // m^2, of a line
   Vector3 velocity = {0, 0, 0};   // m/s
   std::vector<EnergyUse> energies;
   std::vector<BoxSelector> fixed;
+  std::vector<ScriptedBox> scripted;
+};
+
+// A surface without degrees of freedom, at rest or moved by a script.
+struct SceneObstacle : SceneShape {
+  Vector3 center = {0, 0, 0};  // m, that rotations are about; moves along
+  std::vector<MotionKey> motion;
+};
+
+// What holds between two objects, or for one with itself, instead of what [contact] says.
+struct ContactPair : Located {
+  std::string first, second;
+  bool ignore = false;
+  std::optional<double> mu, mu_kinetic;
+};
+
+// Contact of objects and obstacles with one another and themselves.
+struct ContactSettings : Located {
+  std::string barrier = "log_barrier";  // its law: a name in the catalogue, or a path relative to the scene file
+  double dhat = 1e-3;                   // m
+  double mu = 0;                        // 0: no friction
+  std::optional<double> mu_kinetic;     // absent: mu
+  double epsv = 1e-3;                   // m/s
+  double fall = 1e-3;                   // m/s
+  std::optional<double> stiffness;      // kappa of the barrier; absent: chosen and adapted by the solver
+  std::vector<ContactPair> pairs;
 };
 
 // The half-space dot(normal, x) < height.
@@ -118,7 +178,9 @@ struct Scene : Located {
   SolverSettings solver;
   OutputSettings output;
   std::vector<SceneObject> objects;
+  std::vector<SceneObstacle> obstacles;
   std::vector<SceneGround> grounds;
+  std::optional<ContactSettings> contact;  // absent: surfaces do not collide, only grounds act
 };
 
 }  // namespace ergon

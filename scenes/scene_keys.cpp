@@ -4,16 +4,13 @@
 #include <cmath>
 
 #include "runtime/mesh/quadrature.h"
+#include "scenes/contact_keys.h"
+#include "scenes/shape_keys.h"
 
 namespace ergon {
 namespace {
 
-constexpr double inf = std::numeric_limits<double>::infinity();
-const Range any{};  // finite
-const Range with_infinity{-inf, inf, false, false};
-const Range positive{0, inf, true, true};
-const Range not_negative{0, inf, false, true};
-const Range from_1{1, inf, false, true};
+using namespace key_ranges;
 
 Section<TimeSettings> time_section() {
   using T = TimeSettings;
@@ -42,7 +39,8 @@ Section<SolverSettings> solver_section() {
   Section<T> out{"[solver]", "How each step is solved.", {}, {}, {}};
   out.keys = {
       number_key("tolerance", &T::tolerance, "m/s", positive, Need::optional,
-                 "a step is solved when Newton's next change of any velocity is below this"),
+                 "a step is solved when Newton's next change of any velocity is below this; with friction also below a "
+                 "twentieth of `epsv`"),
       integer_key("max_iterations", &T::max_iterations, from_1, Need::optional,
                   "Newton iterations after which a step counts as not converged"),
       choice_key("projection", &T::projection, {"clamp", "absolute", "progressive", "none"},
@@ -76,16 +74,6 @@ Section<OutputSettings> output_section() {
   return out;
 }
 
-Section<BoxSource> box_section() {
-  using T = BoxSource;
-  Section<T> out{"[object.box]", "A block made of equal cells, one corner at the origin.", {}, {}, {}};
-  out.keys = {
-      vector_key("size", &T::size, "m", positive, Need::required, "edge lengths"),
-      integers_key("cells", &T::cells, from_1, Need::required, "cells along each edge"),
-  };
-  return out;
-}
-
 Section<EnergyUse> energy_section() {
   using T = EnergyUse;
   Section<T> out{"[[object.energy]]",
@@ -104,6 +92,20 @@ Section<EnergyUse> energy_section() {
   return out;
 }
 
+// Keys of a box that selects vertices.
+template <class T>
+std::vector<Key<T>> selector_keys() {
+  return {vector_key<T>("min", &T::min, "m", with_infinity, Need::optional, "lower corner"),
+          vector_key<T>("max", &T::max, "m", with_infinity, Need::optional, "upper corner")};
+}
+
+void check_selector(const BoxSelector& box) {
+  for (size_t axis = 0; axis < 3; ++axis)
+    if (box.min[axis] > box.max[axis])
+      throw SourceError(box.at("max"), fmt::format("'max' is below 'min' along axis {}: {} m < {} m", "xyz"[axis],
+                                                   box.max[axis], box.min[axis]));
+}
+
 Section<BoxSelector> fixed_section() {
   using T = BoxSelector;
   Section<T> out{"[[object.fixed]]",
@@ -111,15 +113,25 @@ Section<BoxSelector> fixed_section() {
                  {},
                  {},
                  {}};
-  out.keys = {
-      vector_key("min", &T::min, "m", with_infinity, Need::optional, "lower corner"),
-      vector_key("max", &T::max, "m", with_infinity, Need::optional, "upper corner"),
-  };
+  out.keys = selector_keys<T>();
+  out.check = [](const std::string&, const T& box) { check_selector(box); };
+  return out;
+}
+
+Section<ScriptedBox> scripted_section() {
+  using T = ScriptedBox;
+  Section<T> out{"[[object.scripted]]",
+                 "A box; the object's vertices in it (after scale, rotate and translate) follow a script.",
+                 {},
+                 {},
+                 {}};
+  out.keys = selector_keys<T>();
+  out.keys.push_back(
+      vector_key("center", &T::center, "m", any, Need::optional, "what rotations are about; moves along"));
+  out.keys.push_back(tables_key("key", &T::motion, motion_section<SceneObject>, Need::required, "the script"));
   out.check = [](const std::string&, const T& box) {
-    for (size_t axis = 0; axis < 3; ++axis)
-      if (box.min[axis] > box.max[axis])
-        throw SourceError(box.at("max"), fmt::format("'max' is below 'min' along axis {}: {} m < {} m", "xyz"[axis],
-                                                     box.max[axis], box.min[axis]));
+    check_selector(box);
+    check_motion(box.motion);
   };
   return out;
 }
@@ -129,17 +141,8 @@ std::vector<std::string> element_names() {
 }
 
 void check_object(const std::string&, const SceneObject& object) {
-  const bool surface = object.wrote("mesh") && !object.mesh.ends_with(".msh");
-  if (object.box.has_value() == object.wrote("mesh"))
-    throw SourceError(object.box ? object.at("box") : object.place,
-                      fmt::format("object '{}' {}", object.name,
-                                  object.box ? "has both 'mesh' and 'box'; keep one of them"
-                                             : "lacks 'mesh' (a file) or 'box' (size and cells)"));
-  const char* endings[] = {".msh", ".obj", ".stl", ".ply"};
-  if (object.wrote("mesh") && std::none_of(std::begin(endings), std::end(endings),
-                                           [&](const char* ending) { return object.mesh.ends_with(ending); }))
-    throw SourceError(object.at("mesh"),
-                      fmt::format("'mesh' must end in .msh, .obj, .stl or .ply, found \"{}\"", object.mesh));
+  check_shape(object);
+  const bool surface = (object.wrote("mesh") && !object.mesh.ends_with(".msh")) || object.sphere || object.tube;
   if (object.wrote("max_edge") && !surface)
     throw SourceError(object.at("max_edge"),
                       "'max_edge' has no use here: it is for surface meshes (.obj, .stl, .ply), which are filled with "
@@ -152,12 +155,6 @@ Section<SceneObject> object_section() {
   using T = SceneObject;
   Section<T> out{"[[object]]", "A deformable body.", {}, {}, {}};
   out.keys = {
-      text_key("name", &T::name, Need::required, "a name of its own, used in messages and results"),
-      text_key("mesh", &T::mesh, Need::optional,
-               "mesh file relative to the scene: cells (.msh), or a closed surface (.obj, .stl, .ply) that is filled "
-               "with tetrahedra",
-               "give `mesh` or `box`"),
-      table_key("box", &T::box, box_section, "instead of a mesh file"),
       number_key("max_edge", &T::max_edge, "m", positive, Need::optional,
                  "longest edge wanted of the tetrahedra that fill a surface, after scaling",
                  "continued from the surface"),
@@ -168,10 +165,6 @@ Section<SceneObject> object_section() {
       integer_key("quadrature", &T::quadrature, {0, kMaxExactness, false, false}, Need::optional,
                   "degree of polynomials that the energies' quadrature integrates exactly on an element",
                   "full integration of the element's stiffness"),
-      number_key("scale", &T::scale, "1", positive, Need::optional, "factor on the mesh's coordinates"),
-      vector_key("rotate", &T::rotate, "rad", any, Need::optional,
-                 "angles about the x, then y, then z axis, after scaling"),
-      vector_key("translate", &T::translate, "m", any, Need::optional, "displacement, after rotating"),
       number_key("density", &T::density, "kg/m^3", positive, Need::required, "mass per rest volume"),
       number_key("thickness", &T::thickness, "m", positive, Need::optional, "of a membrane, for its mass",
                  "required for membranes"),
@@ -180,7 +173,12 @@ Section<SceneObject> object_section() {
       vector_key("velocity", &T::velocity, "m/s", any, Need::optional, "velocity at the start"),
       tables_key("energy", &T::energies, energy_section, Need::required, "what the object is made of"),
       tables_key("fixed", &T::fixed, fixed_section, Need::optional, "vertices that never move"),
+      tables_key("scripted", &T::scripted, scripted_section, Need::optional, "vertices that follow a script"),
   };
+  const std::vector<Key<T>> shape = shape_keys<T>(
+      "mesh file relative to the scene: cells (.msh), or a closed surface (.obj, .stl, .ply) that is filled with "
+      "tetrahedra");
+  out.keys.insert(out.keys.begin(), shape.begin(), shape.end());
   out.check = check_object;
   return out;
 }
@@ -218,17 +216,11 @@ Section<Scene> scene_section() {
       table_key("solver", &T::solver, solver_section, Need::optional, "how each step is solved"),
       table_key("output", &T::output, output_section, Need::optional, "what is written"),
       tables_key("object", &T::objects, object_section, Need::required, "at least one deformable body"),
+      tables_key("obstacle", &T::obstacles, obstacle_section, Need::optional, "surfaces without degrees of freedom"),
       tables_key("ground", &T::grounds, ground_section, Need::optional, "half-spaces"),
+      table_key("contact", &T::contact, contact_section, "surfaces collide, with one another and themselves"),
   };
-  out.check = [](const std::string&, const T& scene) {
-    std::map<std::string, const SceneObject*> seen;
-    for (const SceneObject& object : scene.objects) {
-      auto [first, is_new] = seen.emplace(object.name, &object);
-      if (!is_new)
-        throw SourceError(object.at("name"), fmt::format("the name '{}' is taken by the object in line {}", object.name,
-                                                         first->second->at("name").line));
-    }
-  };
+  out.check = [](const std::string&, const T& scene) { check_names(scene); };
   return out;
 }
 

@@ -35,7 +35,7 @@ void check_body(const SceneObject& object, const Body& body, const SceneGround& 
 
 void check_start(const Scene& scene, const std::vector<Body>& bodies) {
   for (const SceneGround& ground : scene.grounds)
-    for (size_t i = 0; i < bodies.size(); ++i) check_body(scene.objects[i], bodies[i], ground);
+    for (size_t i = 0; i < scene.objects.size(); ++i) check_body(scene.objects[i], bodies[i], ground);
 }
 
 }  // namespace ergon

@@ -36,6 +36,10 @@ void add_run_command(CLI::App& app, Run& run) {
   command->add_option("scene", options->file, "a scene file (.toml)")->required();
   command->add_option("--out", options->folder, "folder for the results; default: as the scene says, or out/NAME");
   command->add_option("--threads", *threads, "threads to use; default: all cores");
+  command->add_flag("--verify", options->verify,
+                    "test all surfaces for intersections after every step, in exact arithmetic; one ends the run");
+  command->add_option("--report-intersections", options->intersections,
+                      "file (.vtu) for a mesh of the surfaces that intersect at the start, if any do");
   command->add_flag("--quiet", *quiet, "no progress and no summary");
   command->callback([options, quiet, threads, &run] {
     run = [options, quiet, threads](std::ostream& out) {

@@ -69,9 +69,9 @@ Kernel load_kernel(const Energy& energy, const std::string& case_name, int lanes
 
 bool serves_in_floats(const Energy& energy) { return energy.with_role(Role::lag).empty() && energy.active.empty(); }
 
-std::vector<Kernel> load_kernels(const std::vector<const Energy*>& energies, int lanes, Precision precision) {
+std::vector<Kernel> load_kernels(const std::vector<KernelRequest>& requests, int lanes, Precision precision) {
   std::vector<CompileJob> jobs;
-  for (const Energy* energy : energies) jobs.push_back({energy, compile_options("", lanes)});
+  for (const auto& [energy, case_name] : requests) jobs.push_back({energy, compile_options(case_name, lanes)});
   std::vector<Kernel> kernels;
   for (const CompiledKernel& compiled : kernels_of(compile_all(jobs)))
     kernels.push_back({compiled.library, compiled.table});
@@ -80,9 +80,9 @@ std::vector<Kernel> load_kernels(const std::vector<const Energy*>& energies, int
   jobs.clear();
   std::vector<size_t> replaced;
   for (size_t i = 0; i < kernels.size(); ++i) {
-    if (kernels[i]->constant_hessian || !serves_in_floats(*energies[i])) continue;
+    if (kernels[i]->constant_hessian || !serves_in_floats(*requests[i].energy)) continue;
     replaced.push_back(i);
-    jobs.push_back({energies[i], compile_options("", lanes > 1 ? 2 * lanes : 1, true)});
+    jobs.push_back({requests[i].energy, compile_options(requests[i].case_name, lanes > 1 ? 2 * lanes : 1, true)});
   }
   const std::vector<CompiledKernel> singles = kernels_of(compile_all(jobs));
   for (size_t i = 0; i < replaced.size(); ++i) {

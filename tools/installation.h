@@ -7,6 +7,7 @@
 
 #include "codegen/compile.h"
 #include "runtime/potential.h"
+#include "scenes/builder.h"
 #include "symbolic/energy.h"
 
 namespace ergon {
@@ -41,9 +42,9 @@ Kernel load_kernel(const Energy& energy, const std::string& case_name, int lanes
 // depends on those.
 bool serves_in_floats(const Energy& energy);
 
-// Of energies without cases, in their order; those that no cache holds are compiled side by side. Energies that do not
+// In their order; those that no cache holds are compiled side by side. Energies that do not
 // serve in floats, and those whose Hessian is constant, so that floats would save nothing, stay in doubles.
-std::vector<Kernel> load_kernels(const std::vector<const Energy*>& energies, int lanes,
+std::vector<Kernel> load_kernels(const std::vector<KernelRequest>& requests, int lanes,
                                  Precision precision = Precision::double_);
 
 }  // namespace ergon

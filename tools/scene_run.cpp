@@ -60,11 +60,17 @@ RunSummary run_scene_file(const SceneRun& options) {
   run.folder = folder_of(options, scene);
   if (!run.folder.empty()) prepare_output(run.folder);
   const Catalogue catalogue(Catalogue::default_folders());
-  BuiltScene built = build_scene(scene, catalogue, [&](const std::vector<const Energy*>& energies) {
-    return load_kernels(energies, lanes::best_lanes(), precision_named(scene.solver.precision));
-  });
+  BuiltScene built = build_scene(
+      scene, catalogue,
+      [&](const std::vector<KernelRequest>& requests) {
+        return load_kernels(requests, lanes::best_lanes(), precision_named(scene.solver.precision));
+      },
+      [&](const Frame& faults) {
+        if (!options.intersections.empty()) write_vtu(options.intersections, faults);
+      });
   InterruptGuard guard;
   run.stop = [] { return interrupted != 0; };
+  run.verify = options.verify;
   if (options.progress == nullptr) return run_scene(scene, built, run);
 
   for (const std::string& warning : built.warnings) *options.progress << "warning  " << warning << '\n';

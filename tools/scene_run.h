@@ -14,6 +14,8 @@ struct SceneRun {
   std::string folder;                // ""; as the scene says
   bool write = true;                 // false: no frames, no report
   std::ostream* progress = nullptr;  // null: none
+  bool verify = false;               // RunOptions::verify
+  std::string intersections;         // file (.vtu) for a mesh of what intersects at the start; "": none
 };
 
 // Throws SourceError, InputError and OutputError. Ends early, with `stopped` in the summary, when the process is

@@ -1,0 +1,98 @@
+#include "scenes/contact_keys.h"
+
+#include "scenes/shape_keys.h"
+
+namespace ergon {
+namespace {
+
+using namespace key_ranges;
+
+Section<ContactPair> pair_section() {
+  using T = ContactPair;
+  Section<T> out{"[[contact.pair]]",
+                 "What holds between two objects or obstacles, or within one, instead of what [contact] says.",
+                 {},
+                 {},
+                 {}};
+  out.keys = {
+      text_key("first", &T::first, Need::required, "name of an object or obstacle"),
+      text_key("second", &T::second, Need::required, "name of another, or the same"),
+      boolean_key("ignore", &T::ignore, "they pass through each other"),
+      number_key("mu", &T::mu, "1", not_negative, Need::optional, "coefficient of friction", "that of [contact]"),
+      number_key("mu_kinetic", &T::mu_kinetic, "1", not_negative, Need::optional, "coefficient while sliding",
+                 "`mu` of this pair, else that of [contact]"),
+  };
+  return out;
+}
+
+}  // namespace
+
+Section<SceneObstacle> obstacle_section() {
+  using T = SceneObstacle;
+  Section<T> out{"[[obstacle]]",
+                 "A surface that others collide with and that nothing moves but its script. Needs [contact].",
+                 {},
+                 {},
+                 {}};
+  out.keys =
+      shape_keys<T>("mesh file relative to the scene: a surface (.obj, .stl, .ply), open or closed, or cells (.msh)");
+  out.keys.push_back(vector_key("center", &T::center, "m", any, Need::optional,
+                                "what rotations of the script are about; moves along"));
+  out.keys.push_back(tables_key("key", &T::motion, motion_section<T>, Need::optional, "script of its motion"));
+  out.check = [](const std::string&, const T& obstacle) {
+    check_shape(obstacle);
+    check_motion(obstacle.motion);
+  };
+  return out;
+}
+
+Section<ContactSettings> contact_section() {
+  using T = ContactSettings;
+  Section<T> out{"[contact]",
+                 "Surfaces of objects and obstacles collide, with one another and themselves. Without this table only "
+                 "grounds act.",
+                 {},
+                 {},
+                 {}};
+  out.keys = {
+      text_key("barrier", &T::barrier, Need::optional,
+               "law of the barrier: name in the catalogue, or path of an .energy file relative to the scene"),
+      number_key("dhat", &T::dhat, "m", positive, Need::optional, "gap at which barriers begin to act"),
+      number_key("mu", &T::mu, "1", not_negative, Need::optional, "coefficient of friction; 0 leaves friction out"),
+      number_key("mu_kinetic", &T::mu_kinetic, "1", not_negative, Need::optional, "coefficient while sliding", "`mu`"),
+      number_key("epsv", &T::epsv, "m/s", positive, Need::optional, "sliding speed below which friction is static"),
+      number_key("fall", &T::fall, "m/s", positive, Need::optional,
+                 "by how much faster than `epsv` friction is down to `mu_kinetic`"),
+      number_key("stiffness", &T::stiffness, "1", positive, Need::optional,
+                 "kappa of the barriers, in the unit of their law", "chosen and adapted by the solver"),
+      tables_key("pair", &T::pairs, pair_section, Need::optional, "exceptions"),
+  };
+  return out;
+}
+
+void check_names(const Scene& scene) {
+  std::map<std::string, std::pair<const char*, const Located*>> seen;
+  std::vector<std::string> names;
+  const auto add = [&](const char* kind, const SceneShape& shape) {
+    auto [first, is_new] = seen.emplace(shape.name, std::pair(kind, &shape));
+    names.push_back(shape.name);
+    if (is_new) return;
+    const auto& [other, place] = first->second;
+    throw SourceError(shape.at("name"), fmt::format("the name '{}' is taken by the {} in line {}", shape.name, other,
+                                                    place->at("name").line));
+  };
+  for (const SceneObject& object : scene.objects) add("object", object);
+  for (const SceneObstacle& obstacle : scene.obstacles) add("obstacle", obstacle);
+  if (!scene.obstacles.empty() && !scene.contact)
+    throw SourceError(scene.obstacles.front().place,
+                      "an obstacle has no effect without contact; add the table [contact]");
+  if (!scene.contact) return;
+  for (const ContactPair& pair : scene.contact->pairs) {
+    for (const auto& [key, name] : {std::pair("first", &pair.first), std::pair("second", &pair.second)})
+      if (seen.count(*name) == 0)
+        throw SourceError(pair.at(key),
+                          fmt::format("there is no object or obstacle '{}'{}", *name, did_you_mean(*name, names)));
+  }
+}
+
+}  // namespace ergon
