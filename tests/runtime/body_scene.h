@@ -4,6 +4,7 @@
 #include <memory>
 #include <numeric>
 
+#include "runtime/contact/ground.h"
 #include "runtime/solver/time_step.h"
 #include "tests/runtime/body_kernels.h"
 

@@ -169,11 +169,11 @@ TEST(Ground, FrictionLagTellsHowMuchForcesChanged) {
   scene.add_ground({{.friction = 0.3}});
   const Matrix3Xd x = scene.state.x, away = column(Vector3d(0, 1, 0));
   scene.ground->begin_step(x, scene.state.v, 0.01);
-  EXPECT_EQ(scene.ground->lag_friction(away, away, 0.01), 0);
-  EXPECT_EQ(scene.ground->lag_friction(x, x, 0.01), 1);
+  EXPECT_EQ(scene.ground->lag_friction(away, away, 0.01).fraction(), 0);
+  EXPECT_EQ(scene.ground->lag_friction(x, x, 0.01).fraction(), 1);
   EXPECT_EQ(scene.ground->friction_count(), 1);
-  EXPECT_EQ(scene.ground->lag_friction(x, x, 0.01), 0);
-  EXPECT_EQ(scene.ground->lag_friction(away, x, 0.01), 1);
+  EXPECT_EQ(scene.ground->lag_friction(x, x, 0.01).fraction(), 0);
+  EXPECT_EQ(scene.ground->lag_friction(away, x, 0.01).fraction(), 1);
   EXPECT_EQ(scene.ground->friction_count(), 0);
 }
 

@@ -216,7 +216,7 @@ TEST(TimeStep, SaysWhatItSkipped) {
 
   BodyScene bare = point_scene(Vector3d(0, 1, 0), Vector3d::Zero(), down);
   bare.start({.dt = 0.01});
-  EXPECT_THAT(bare.step().skipped, Contains("contact: the scene has no ground"));
+  EXPECT_THAT(bare.step().skipped, Contains("contact: nothing in the scene may touch"));
 }
 
 TEST(TimeStep, FixedVerticesStayAndCarryNoEnergyOfMotion) {

@@ -27,9 +27,9 @@ energy = [{ law = "stable_neo_hookean", E = "0.5 MPa", nu = 0.4 }]
 // The laws whose kernels a scene asks for.
 std::vector<std::string> kernels_of(const std::string& text) {
   std::vector<std::string> asked;
-  build_scene(read_scene_text(text, "a.toml"), shipped_energies(), [&](const std::vector<const Energy*>& energies) {
-    for (const Energy* energy : energies) asked.push_back(energy->name);
-    return real_kernels(energies);
+  build_scene(read_scene_text(text, "a.toml"), shipped_energies(), [&](const std::vector<KernelRequest>& requests) {
+    for (const auto& [energy, case_name] : requests) asked.push_back(energy->name);
+    return real_kernels(requests);
   });
   return asked;
 }
@@ -43,11 +43,19 @@ TEST(builder, asks_only_for_the_kernels_that_are_used_and_says_what_is_left_out)
   EXPECT_THAT(kernels_of(time_part + block + "[[ground]]\n[[ground]]\nmu = 0.1\nheight = -1\n"),
               ElementsAre("stable_neo_hookean", "inertia", "gravity", "log_barrier:half_space", "friction"));
 
+  EXPECT_THAT(kernels_of(time_part + block + "[contact]\n"),
+              ElementsAre("stable_neo_hookean", "inertia", "gravity", "log_barrier:point_point",
+                          "log_barrier:point_edge", "log_barrier:point_triangle", "log_barrier:edge_edge",
+                          "log_barrier:edge_edge", "log_barrier:edge_edge"));
+
   EXPECT_THAT(build_text("gravity = [0, 0, 0]\n" + time_part + block).skipped,
               ElementsAre("gravity: it is zero in this scene, no kernel loaded",
-                          "log_barrier, friction: there is no ground, no kernels loaded"));
+                          "ground contact: there is no ground, no kernel loaded",
+                          "surface contact: the scene has no [contact], no kernels loaded",
+                          "friction: nothing has a coefficient of friction 'mu', no kernel loaded"));
   EXPECT_THAT(build_text(time_part + block + "[[ground]]\n").skipped,
-              ElementsAre("friction: no ground has a coefficient of friction 'mu', no kernel loaded"));
+              ElementsAre("surface contact: the scene has no [contact], no kernels loaded",
+                          "friction: nothing has a coefficient of friction 'mu', no kernel loaded"));
 }
 
 // Drag takes what it says from a body that flies free of other forces; a dashpot between its points takes nothing.

@@ -34,8 +34,8 @@ std::string without(std::string text, const std::string& part) {
 }
 
 std::string message_of(const std::string& name) {
-  const KernelSource none = [](const std::vector<const Energy*>& energies) -> std::vector<Kernel> {
-    throw std::logic_error("the kernel of " + energies.front()->name +
+  const KernelSource none = [](const std::vector<KernelRequest>& requests) -> std::vector<Kernel> {
+    throw std::logic_error("the kernel of " + requests.front().energy->name +
                            " was asked for before the scene was found to be wrong");
   };
   try {

@@ -8,12 +8,15 @@
 
 namespace ergon {
 
-inline std::vector<Kernel> real_kernels(const std::vector<const Energy*>& energies) {
+inline std::vector<Kernel> real_kernels(const std::vector<KernelRequest>& requests) {
   CompileOptions options;
   options.lanes = lanes::best_lanes();
   options.read_only_caches = {ERGON_BINARY_DIR "/kernels"};
   std::vector<CompileJob> jobs;
-  for (const Energy* energy : energies) jobs.push_back({energy, options});
+  for (const auto& [energy, case_name] : requests) {
+    options.case_name = case_name;
+    jobs.push_back({energy, options});
+  }
   std::vector<Kernel> kernels;
   for (const CompiledKernel& compiled : kernels_of(compile_all(jobs)))
     kernels.push_back({compiled.library, compiled.table});

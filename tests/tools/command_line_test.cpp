@@ -20,6 +20,7 @@ class CommandLine : public CommandTest {
     EXPECT_EQ(answer.err, message.empty() ? "" : "ergon: error: " + message + "\n") << arguments;
   }
 };
+class SlowCommandLine : public CommandLine {};
 
 TEST_F(CommandLine, TellsItsVersionAndHelps) {
   const Answer version = ergon("--version");
@@ -137,7 +138,7 @@ TEST_F(CommandLine, CompilesOnceAndDumpsPasses) {
   expect("compile", 2, "'ergon compile' needs an energy, or --catalogue FOLDER");
 }
 
-TEST_F(CommandLine, TheCatalogueIsCompiledOnceForAllWidths) {
+TEST_F(SlowCommandLine, TheCatalogueIsCompiledOnceForAllWidths) {
   const Answer first = ergon("compile --catalogue kernels");
   EXPECT_EQ(first.code, 0) << first.err;
   EXPECT_THAT(first.out, MatchesRegex("kernels: [0-9]+ kernels compiled, 0 already there\n"));

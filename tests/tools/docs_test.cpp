@@ -45,6 +45,7 @@ bool has_word(const std::string& text, const std::string& word) {
 }
 
 class Docs : public CommandTest {};
+class SlowDocs : public Docs {};
 
 TEST_F(Docs, EnergiesInTheLanguageReferenceAreSound) {
   const std::vector<std::string> energies = blocks(file_text("docs/language.md"), "energy");
@@ -90,7 +91,7 @@ TEST_F(Docs, TheEmittedCodeInTheReadmeIsWhatIsEmitted) {
   EXPECT_NE(answer.out.find(shown[0]), std::string::npos) << answer.out;
 }
 
-TEST_F(Docs, EveryProcessEmitsTheSameBytes) {
+TEST_F(SlowDocs, EveryProcessEmitsTheSameBytes) {
   for (const std::string& name : test::catalogue_names()) {
     const std::string command = "show " + name + " --source";
     const std::string first = ergon(command).out;

@@ -169,10 +169,10 @@ TEST(MixedPrecision, ParamsAndStencilsAreThoseOfBothKernels) {
 TEST(MixedPrecision, IsForEnergiesThatGainByIt) {
   const Energy solid = find_energy("stable_neo_hookean"), linear = find_energy("linear_elasticity"),
                inertia = find_energy("inertia");
-  const std::vector<Kernel> mixed = load_kernels({&solid, &linear, &inertia}, 1, Precision::mixed);
+  const std::vector<Kernel> mixed = load_kernels({{&solid, ""}, {&linear, ""}, {&inertia, ""}}, 1, Precision::mixed);
   EXPECT_NE(mixed[0].curvature, nullptr);
   for (size_t i : {1, 2}) EXPECT_EQ(mixed[i].curvature, nullptr) << i;
-  const std::vector<Kernel> floats = load_kernels({&solid, &linear, &inertia}, 1, Precision::single);
+  const std::vector<Kernel> floats = load_kernels({{&solid, ""}, {&linear, ""}, {&inertia, ""}}, 1, Precision::single);
   EXPECT_NE(floats[0]->single, nullptr);
   for (size_t i : {1, 2}) EXPECT_EQ(floats[i]->single, nullptr) << i;
 }
