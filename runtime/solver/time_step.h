@@ -57,9 +57,9 @@ struct StepRecord {
   bool converged = false;
   std::string reason;  // why not
   int worst_vertex = -1;
-  long step = 0;       // number and time of the state after the step
-  double time = 0;     // s
-  double dt = 0;       // s
+  long step = 0;    // number and time of the state after the step
+  double time = 0;  // s
+  double dt = 0;    // s
   int newton_iterations = 0;
   int follow_iterations = 0;  // of these, those that moved scripted vertices
   double residual = 0;        // N
