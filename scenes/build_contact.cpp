@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "runtime/contact/make_surface.h"
+#include "runtime/error.h"
 
 namespace ergon {
 namespace {
@@ -106,8 +107,13 @@ void add_surfaces(const Scene& scene, const ContactLaws& laws, const UsedKernels
   for (size_t kind = 0; kind < kContactKinds; ++kind)
     loaded.barrier[kind] = kernels.get(*laws.surface[kind], barrier_parts[kind].case_name);
   if (laws.friction != nullptr) loaded.friction = kernels.get(*laws.friction);
-  auto surfaces = std::make_unique<SurfaceContact>(*out.system, std::move(surface), loaded, options, out.start.x,
-                                                   out.mass, vector(scene.gravity));
+  std::unique_ptr<SurfaceContact> surfaces;
+  try {
+    surfaces = std::make_unique<SurfaceContact>(*out.system, std::move(surface), loaded, options, out.start.x, out.mass,
+                                                vector(scene.gravity));
+  } catch (const InputError& bad) {
+    throw SourceError(contact.at("barrier"), bad.what());
+  }
   out.surfaces = surfaces.get();
   out.contacts->add(std::move(surfaces));
 }

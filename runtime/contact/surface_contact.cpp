@@ -50,6 +50,16 @@ void check(const SurfaceContactOptions& options) {
     reject("stiffness", options.stiffness, "", "above 0, or 0 to have it chosen");
 }
 
+// A barrier whose force does not grow without bound lets surfaces meet.
+void check_infinite(const BarrierProbe& probe, double dhat) {
+  constexpr double near = 1e-3, nearer = 1e-9, growth = 10;  // of dhat; a logarithm's force grows a millionfold
+  if (-probe.at(nearer * dhat).slope > growth * -probe.at(near * dhat).slope) return;
+  throw InputError(fmt::format(
+      "contact: the barrier's force at a gap of {:g} dhat is {:.3g} N per unit of its stiffness and does not "
+      "grow towards contact, so that it keeps nothing apart; use one that is infinite there, as log_barrier",
+      nearer, -probe.at(nearer * dhat).slope));
+}
+
 }  // namespace
 
 SurfaceContact::SurfaceContact(System& system, CollisionSurface surface, const SurfaceLaws& laws,
@@ -62,6 +72,7 @@ SurfaceContact::SurfaceContact(System& system, CollisionSurface surface, const S
       broad_(surface_),
       probe_(laws.barrier[0], options_.dhat) {
   check(options_);
+  check_infinite(probe_, options_.dhat);
   for (int v = 0; v < system.vertices(); ++v) {
     if (system.block_of(v) >= 0) weight_ += mass[v] * gravity.norm();
   }

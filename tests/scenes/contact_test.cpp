@@ -169,6 +169,16 @@ TEST(Contact, StartWithIntersectionsNamesThemAndCanBeLookedAt) {
   EXPECT_GT(faults.x.cols(), 4);
 }
 
+TEST(Contact, BarriersThatAreFiniteAtContactAreRefused) {
+  EXPECT_EQ(start_error(settings("[0, 0, 0]", 0.01, 1, "barrier = \"cubic_barrier\"\n") + block("one", "")),
+            "a.toml:6:11: contact: the barrier's force at a gap of 1e-09 dhat is 0.002 N per unit of its stiffness and "
+            "does not grow towards contact, so that it keeps nothing apart; use one that is infinite there, as "
+            "log_barrier");
+  EXPECT_EQ(run_text(settings("[0, 0, 0]", 0.01, 1, "barrier = \"squared_log_barrier\"\n") + block("one", ""))
+                .summary.failure,
+            "");
+}
+
 TEST(Contact, StartCloserThanOffsetsNamesTheVertices) {
   const std::string text = settings("[0, 0, 0]", 0.01, 1) + block("one", "offset = 0.01\n") +
                            block("two", "translate = [0.115, 0, 0]\noffset = 0.01\n");
