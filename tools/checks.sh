@@ -96,8 +96,15 @@ host_paths() {
 
 tidy() {
   [[ -f $build/compile_commands.json ]] || fail "no $build/compile_commands.json: run tools/test or cmake first"
+  # Lanes over floats are compiled with an option of GCC that clang lacks; the same files over doubles are looked at.
+  mkdir -p "$build/tidy"
+  awk '
+    /^{/ { entry = "" }
+    { entry = entry $0 "\n" }
+    /^}/ { sub(/,\n$/, "\n", entry); if (entry !~ /ERGON_SINGLE/) { all = all (all == "" ? "" : ",\n") entry } entry = "" }
+    END { printf "[\n%s]\n", all }' "$build/compile_commands.json" >"$build/tidy/compile_commands.json"
   find symbolic codegen runtime scenes tools -name '*.cpp' -print0 | sort -z |
-    xargs -0 -P "$cores" -n 1 clang-tidy -p "$build" --quiet 2>/dev/null
+    xargs -0 -P "$cores" -n 1 clang-tidy -p "$build/tidy" --quiet 2>/dev/null
 }
 
 checks=(format include_directions file_lengths type_names shell_scripts host_paths)
