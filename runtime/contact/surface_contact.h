@@ -57,11 +57,11 @@ class SurfaceContact : public Contact {
   ContactStatus status(const Eigen::Matrix3Xd& x) override;
   std::vector<std::string> skipped() const override;
 
-  // Vertices of the stencils whose gap is not positive at x; calls set_active.
+  // Vertices of the stencils whose gap is not positive at x. The potentials keep the stencils that they have.
   std::vector<std::vector<int>> touching(const Eigen::Matrix3Xd& x);
 
   const CollisionSurface& surface() const { return surface_; }
-  const ActiveSet& active() const { return active_; }  // of the last set_active
+  const ActiveSet& active() const { return active_; }  // of the last state looked at
   double stiffness(int object_a, int object_b) const { return kappa_(object_a, object_b); }
 
  private:
