@@ -183,27 +183,38 @@ Evaluation System::value(const Eigen::Matrix3Xd& x) {
 }
 
 Evaluation System::gradient(const Eigen::Matrix3Xd& x, Eigen::Matrix3Xd& gradient) {
-  Impl& d = *impl;
-  d.prepare(true);
-  d.load_positions(x);
-  gradient.resize(3, d.vertices);
-#pragma omp parallel if (d.worth_threads())
+  impl->sum_gradients(x, gradient, [](size_t) { return true; });
+  return impl->sum(false);
+}
+
+void System::gradient_of(const std::vector<int>& potentials, const Eigen::Matrix3Xd& x, Eigen::Matrix3Xd& gradient) {
+  std::vector<char> wanted(impl->terms.size(), 0);
+  for (const int i : potentials) wanted[impl->first_terms[static_cast<size_t>(i)]] = 1;
+  impl->sum_gradients(x, gradient, [&](size_t term) { return wanted[term] != 0; });
+}
+
+template <class F>
+void System::Impl::sum_gradients(const Eigen::Matrix3Xd& x, Eigen::Matrix3Xd& sum, F wanted) {
+  prepare(true);
+  load_positions(x);
+  sum.resize(3, vertices);
+#pragma omp parallel if (worth_threads())
   {
 #pragma omp for schedule(static)
-    for (size_t i = 0; i < d.gradient.size(); ++i) d.gradient[i] = 0;
-    for (SystemTerm& term : d.terms) {
-      if (!term.gives_gradient) continue;
+    for (size_t i = 0; i < gradient.size(); ++i) gradient[i] = 0;
+    for (size_t t = 0; t < terms.size(); ++t) {
+      SystemTerm& term = terms[t];
+      if (!term.gives_gradient || !wanted(t)) continue;
       over_colours(term, [&](int chunk) {
-        term.operations->gradient(term.stencils, term.range(chunk), d.points_of(term), d.gradient.data(),
+        term.operations->gradient(term.stencils, term.range(chunk), points_of(term), gradient.data(),
                                   &term.results[static_cast<size_t>(chunk)]);
       });
     }
 #pragma omp for schedule(static)
-    for (int v = 0; v < d.vertices; ++v) {
-      for (int c = 0; c < 3; ++c) gradient(c, v) = d.gradient[4 * static_cast<size_t>(v) + static_cast<size_t>(c)];
+    for (int v = 0; v < vertices; ++v) {
+      for (int c = 0; c < 3; ++c) sum(c, v) = gradient[4 * static_cast<size_t>(v) + static_cast<size_t>(c)];
     }
   }
-  return d.sum(false);
 }
 
 Evaluation System::hessian(const Eigen::Matrix3Xd& x, Projection projection, Eigen::Matrix3Xd& gradient,

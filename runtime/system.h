@@ -40,6 +40,8 @@ class System {
   Evaluation value(const Eigen::Matrix3Xd& x);
   // gradient: 3 x vertices, N; columns of fixed vertices hold the reaction (the full gradient)
   Evaluation gradient(const Eigen::Matrix3Xd& x, Eigen::Matrix3Xd& gradient);
+  // The part of the gradient that comes from some potentials; indices, each once.
+  void gradient_of(const std::vector<int>& potentials, const Eigen::Matrix3Xd& x, Eigen::Matrix3Xd& gradient);
   // The matrix keeps its pattern from call to call; it is built at the first call and again only when a stencil list
   // brings a coupling that is not in it.
   Evaluation hessian(const Eigen::Matrix3Xd& x, Projection projection, Eigen::Matrix3Xd& gradient, BlockMatrix& matrix);

@@ -142,6 +142,9 @@ struct System::Impl {
   // Assembles the constant Hessians again if one of them changed.
   void update_base(Projection projection);
   void load_positions(const Eigen::Matrix3Xd& positions);
+  // The gradient of the terms t with wanted(t), 3 x vertices.
+  template <class F>
+  void sum_gradients(const Eigen::Matrix3Xd& x, Eigen::Matrix3Xd& sum, F wanted);
   // What a term's kernel is evaluated at: positions or displacements, 4 per vertex.
   const double* points_of(const SystemTerm& term) const;
   // Gives a term whose q is F - I a configuration that agrees with its rest positions.

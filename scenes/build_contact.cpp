@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "runtime/contact/area_weights.h"
 #include "runtime/contact/make_surface.h"
 #include "runtime/error.h"
 
@@ -86,6 +87,7 @@ void add_surfaces(const Scene& scene, const ContactLaws& laws, const UsedKernels
   options.dhat = contact.dhat;
   options.epsv = contact.epsv;
   options.stiffness = contact.stiffness.value_or(0);
+  if (contact.area_weights) weight_by_area(surface, out.start.x, contact.dhat);
   const size_t objects = surface.names.size();
   options.fall = contact.fall;
   if (laws.friction != nullptr && has_friction(contact))

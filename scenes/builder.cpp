@@ -174,6 +174,7 @@ StepOptions step_options(const Scene& scene) {
   out.max_iterations = scene.solver.max_iterations;
   out.friction_lag_iterations = scene.solver.friction_iterations;
   out.friction_tolerance = scene.solver.friction_tolerance;
+  out.record_forces = scene.output.forces;
   out.projection = scene.solver.projection == "none"       ? Projection::none
                    : scene.solver.projection == "absolute" ? Projection::absolute
                                                            : Projection::clamp;
@@ -228,6 +229,18 @@ void lay_out(const Scene& scene, BuiltScene& out) {
   out.system->set_fixed(fixed);
 }
 
+std::vector<Probe> probes_of(const Scene& scene, const BuiltScene& built) {
+  std::vector<Probe> out;
+  for (const SceneProbe& probe : scene.probes) {
+    const auto is_it = [&](const Body& body) { return body.name == probe.object; };
+    const Body& body = *std::find_if(built.bodies.begin(), built.bodies.end(), is_it);
+    Eigen::Index nearest = 0;
+    (body.ordered.X.colwise() - vector(probe.near)).colwise().squaredNorm().minCoeff(&nearest);
+    out.push_back({probe.name, body.first_vertex + static_cast<int>(nearest)});
+  }
+  return out;
+}
+
 }  // namespace
 
 BuiltScene build_scene(const Scene& scene, const Catalogue& catalogue, const KernelSource& kernel_source,
@@ -250,6 +263,7 @@ BuiltScene build_scene(const Scene& scene, const Catalogue& catalogue, const Ker
     for (const SceneObstacle& obstacle : scene.obstacles) out.bodies.push_back(load_obstacle(obstacle, folder));
     check_geometries(scene, used, out.bodies);
     lay_out(scene, out);
+    out.probes = probes_of(scene, out);
     check_start(scene, out.bodies);
   }
   {

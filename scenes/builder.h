@@ -38,6 +38,11 @@ struct BuildSeconds {
   double total() const { return energies + meshes + kernels + setup; }
 };
 
+struct Probe {
+  std::string name;
+  int vertex;  // of the system
+};
+
 struct BuiltScene {
   std::vector<Body> bodies;  // objects, then obstacles
   std::unique_ptr<System> system;
@@ -47,6 +52,7 @@ struct BuiltScene {
   Script script;
   Eigen::VectorXd mass;  // kg, per vertex
   State start;
+  std::vector<Probe> probes;
   StepOptions step;
   long steps = 0;
   std::vector<std::string> skipped;  // what was left out, "part: reason"

@@ -65,6 +65,9 @@ Section<ContactSettings> contact_section() {
                  "by how much faster than `epsv` friction is down to `mu_kinetic`"),
       number_key("stiffness", &T::stiffness, "1", positive, Need::optional,
                  "kappa of the barriers, in the unit of their law", "chosen and adapted by the solver"),
+      boolean_key("area_weights", &T::area_weights,
+                  "stencils count by the area that they stand for, so that a finer mesh is not stiffer in contact; "
+                  "`stiffness` is then per m^2"),
       tables_key("pair", &T::pairs, pair_section, Need::optional, "exceptions"),
   };
   return out;
@@ -83,6 +86,16 @@ void check_names(const Scene& scene) {
   };
   for (const SceneObject& object : scene.objects) add("object", object);
   for (const SceneObstacle& obstacle : scene.obstacles) add("obstacle", obstacle);
+  std::map<std::string, const SceneProbe*> probes;
+  for (const SceneProbe& probe : scene.probes) {
+    const auto [first, is_new] = probes.emplace(probe.name, &probe);
+    if (!is_new)
+      throw SourceError(probe.at("name"), fmt::format("the name '{}' is taken by the probe in line {}", probe.name,
+                                                      first->second->at("name").line));
+    if (seen.count(probe.object) == 0 || seen[probe.object].first != std::string("object"))
+      throw SourceError(probe.at("object"),
+                        fmt::format("there is no object '{}'{}", probe.object, did_you_mean(probe.object, names)));
+  }
   if (!scene.obstacles.empty() && !scene.contact)
     throw SourceError(scene.obstacles.front().place,
                       "an obstacle has no effect without contact; add the table [contact]");

@@ -11,7 +11,8 @@
 
 namespace ergon {
 
-Frame frame_of(const std::vector<Body>& bodies, const State& state);
+// With forces: point data contact_force and friction_force, N.
+Frame frame_of(const std::vector<Body>& bodies, const State& state, const ContactForces* forces = nullptr);
 
 // Writes NAME.pvd and NAME_frames/000000.vtu, 000001.vtu ... into a folder.
 class FrameWriter {
@@ -21,7 +22,7 @@ class FrameWriter {
 
   // True when the state's time has reached that of the next frame. `interval` 0: always.
   bool due(const State& state) const;
-  void write(const std::vector<Body>& bodies, const State& state);
+  void write(const std::vector<Body>& bodies, const State& state, const ContactForces* forces = nullptr);
 
   int frames() const { return frames_; }
   long last_step() const { return last_step_; }  // -1 before the first frame

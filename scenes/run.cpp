@@ -20,7 +20,26 @@ namespace {
 
 std::string name_of_scene(const Scene& scene) { return fs::path(scene.file).stem().string(); }
 
-ReportRecord report_of(const StepRecord& record) {
+std::vector<ObjectForces> forces_by_object(const ContactForces& forces, const std::vector<Body>& bodies) {
+  std::vector<ObjectForces> out;
+  for (const Body& body : bodies) {
+    const auto sum = [&](const Eigen::Matrix3Xd& field) {
+      const Eigen::Vector3d total = field.middleCols(body.first_vertex, body.ordered.vertices()).rowwise().sum();
+      return std::array{total[0], total[1], total[2]};
+    };
+    out.push_back({body.name, sum(forces.normal), sum(forces.friction)});
+  }
+  return out;
+}
+
+std::vector<std::pair<std::string, std::array<double, 3>>> probed(const BuiltScene& built, const Eigen::Matrix3Xd& x) {
+  std::vector<std::pair<std::string, std::array<double, 3>>> out;
+  for (const Probe& probe : built.probes)
+    out.emplace_back(probe.name, std::array{x(0, probe.vertex), x(1, probe.vertex), x(2, probe.vertex)});
+  return out;
+}
+
+ReportRecord report_of(const StepRecord& record, const BuiltScene& built, const Eigen::Matrix3Xd& x) {
   ReportRecord out;
   out.step = static_cast<int>(record.step);
   out.time = record.time;
@@ -38,6 +57,8 @@ ReportRecord report_of(const StepRecord& record) {
   }
   if (std::isfinite(record.smallest_gap)) out.smallest_gap = record.smallest_gap;
   out.contacts = record.contacts;
+  if (record.forces) out.forces = forces_by_object(*record.forces, built.bodies);
+  out.probes = probed(built, x);
   out.more = {{"step_speed", record.step_speed},
               {"factorisations", static_cast<double>(record.factorisations)},
               {"halvings", static_cast<double>(record.halvings)},
@@ -58,16 +79,22 @@ class Output {
     prepare_output(folder);
     fs::remove(fs::path(folder) / "summary.json");
     report_ = std::make_unique<Report>((fs::path(folder) / "report.jsonl").string());
+    if (scene.output.forces) {
+      const Eigen::Matrix3Xd none = Eigen::Matrix3Xd::Zero(3, built.system->vertices());
+      forces_ = ContactForces{none, none};
+    }
     if (scene.output.frames)
       frames_ = std::make_unique<FrameWriter>(folder, name_of_scene(scene), scene.output.frame_interval);
   }
 
   void state(const State& state, bool last = false) {
     if (frames_ != nullptr && frames_->last_step() != state.step && (last || frames_->due(state)))
-      frames_->write(built_->bodies, state);
+      frames_->write(built_->bodies, state, forces_ ? &*forces_ : nullptr);
   }
-  void step(const StepRecord& record) {
-    if (report_ != nullptr) report_->append(report_of(record));
+  void step(const StepRecord& record, const State& state) {
+    if (report_ == nullptr) return;
+    report_->append(report_of(record, *built_, state.x));
+    if (record.forces && record.accepted) forces_ = *record.forces;
   }
   void summary(const RunSummary& summary) {
     if (!folder_.empty()) write_file((fs::path(folder_) / "summary.json").string(), to_json(summary) + "\n");
@@ -79,6 +106,7 @@ class Output {
   std::string folder_;
   std::unique_ptr<Report> report_;
   std::unique_ptr<FrameWriter> frames_;
+  std::optional<ContactForces> forces_;  // of the last step; zero at the start
 };
 
 RunSummary summary_of_start(const Scene& scene, const BuiltScene& built, double start_energy) {
@@ -152,7 +180,7 @@ RunSummary run_scene(const Scene& scene, BuiltScene& built, const RunOptions& op
     if (options.verify && record.accepted && !summary.failure.empty()) state = before;
     {
       Stopwatch watch(output_seconds);
-      output->step(record);
+      output->step(record, state);
       output->state(state);
     }
     if (options.progress) options.progress(record, built.steps);
@@ -163,6 +191,7 @@ RunSummary run_scene(const Scene& scene, BuiltScene& built, const RunOptions& op
   }
   summary.frames = output->frames();
   summary.largest_speed = std::sqrt(state.v.colwise().squaredNorm().maxCoeff());
+  summary.probes = probed(built, state.x);
   summary.peak_memory = peak_memory();
   summary.output_seconds = output_seconds;
   output->summary(summary);

@@ -126,6 +126,13 @@ struct ContactPair : Located {
   std::optional<double> mu, mu_kinetic;
 };
 
+// A vertex whose path is written: the one of an object that is nearest to a point at the start.
+struct SceneProbe : Located {
+  std::string name;
+  std::string object;
+  Vector3 near = {0, 0, 0};  // m
+};
+
 // Contact of objects and obstacles with one another and themselves.
 struct ContactSettings : Located {
   std::string barrier = "log_barrier";  // its law: a name in the catalogue, or a path relative to the scene file
@@ -135,6 +142,7 @@ struct ContactSettings : Located {
   double epsv = 1e-3;                   // m/s
   double fall = 1e-3;                   // m/s
   std::optional<double> stiffness;      // kappa of the barrier; absent: chosen and adapted by the solver
+  bool area_weights = false;            // stencils count by area; stiffness is then per m^2
   std::vector<ContactPair> pairs;
 };
 
@@ -168,6 +176,7 @@ struct OutputSettings : Located {
   std::string folder;         // "": out/ and the name of the scene file; relative to the working directory
   double frame_interval = 0;  // s; 0: every step
   bool frames = true;
+  bool forces = false;  // of contact, in frames and report
 };
 
 struct Scene : Located {
@@ -180,6 +189,7 @@ struct Scene : Located {
   std::vector<SceneObject> objects;
   std::vector<SceneObstacle> obstacles;
   std::vector<SceneGround> grounds;
+  std::vector<SceneProbe> probes;
   std::optional<ContactSettings> contact;  // absent: surfaces do not collide, only grounds act
 };
 

@@ -70,6 +70,9 @@ Section<OutputSettings> output_section() {
       number_key("frame_interval", &T::frame_interval, "s", not_negative, Need::optional,
                  "simulated time between frames; 0 writes every step"),
       boolean_key("frames", &T::frames, "write frames (.vtu files and a .pvd series)"),
+      boolean_key("forces", &T::forces,
+                  "write the forces of contact and of friction at the end of each step: on every vertex in frames, and "
+                  "their sums over each object and obstacle in report.jsonl (N)"),
   };
   return out;
 }
@@ -204,6 +207,21 @@ Section<SceneGround> ground_section() {
   return out;
 }
 
+Section<SceneProbe> probe_section() {
+  using T = SceneProbe;
+  Section<T> out{"[[probe]]",
+                 "A vertex whose position is written: after every step in report.jsonl, at the end in summary.json.",
+                 {},
+                 {},
+                 {}};
+  out.keys = {
+      text_key("name", &T::name, Need::required, "a name of its own"),
+      text_key("object", &T::object, Need::required, "name of an object"),
+      vector_key("near", &T::near, "m", any, Need::required, "the object's vertex nearest to this point at the start"),
+  };
+  return out;
+}
+
 }  // namespace
 
 Section<Scene> scene_section() {
@@ -218,6 +236,7 @@ Section<Scene> scene_section() {
       tables_key("object", &T::objects, object_section, Need::required, "at least one deformable body"),
       tables_key("obstacle", &T::obstacles, obstacle_section, Need::optional, "surfaces without degrees of freedom"),
       tables_key("ground", &T::grounds, ground_section, Need::optional, "half-spaces"),
+      tables_key("probe", &T::probes, probe_section, Need::optional, "vertices whose paths are written"),
       table_key("contact", &T::contact, contact_section, "surfaces collide, with one another and themselves"),
   };
   out.check = [](const std::string&, const T& scene) { check_names(scene); };

@@ -9,12 +9,9 @@
 
 namespace ergon {
 
-Scene read_scene_text(std::string_view text, const std::string& file) {
-  Scene scene;
-  scene.file = file;
+toml::table parse_scene(std::string_view text, const std::string& file) {
   try {
-    const toml::table table = toml::parse(text, file);
-    read_section(table, scene_section(), file, scene);
+    return toml::parse(text, file);
   } catch (const toml::parse_error& bad) {
     std::string what(bad.description());
     if (what.find("unescaped control characters") != std::string::npos) what = "this string is not closed in its line";
@@ -22,15 +19,23 @@ Scene read_scene_text(std::string_view text, const std::string& file) {
     if (what.starts_with("Error while")) what.erase(0, what.find(": ") + 2);
     throw SourceError(place_of(bad.source(), file), what);
   }
+}
+
+Scene read_scene_text(std::string_view text, const std::string& file) {
+  Scene scene;
+  scene.file = file;
+  read_section(parse_scene(text, file), scene_section(), file, scene);
   return scene;
 }
 
-Scene read_scene(const std::string& file) {
+std::string read_scene_file_text(const std::string& file) {
   std::ifstream in(file);
   std::ostringstream text;
   if (!in || !(text << in.rdbuf()))
     throw SourceError(Place{file, 0, 0}, fmt::format("cannot read this scene file: {}", std::strerror(errno)));
-  return read_scene_text(text.str(), file);
+  return text.str();
 }
+
+Scene read_scene(const std::string& file) { return read_scene_text(read_scene_file_text(file), file); }
 
 }  // namespace ergon

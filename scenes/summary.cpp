@@ -78,6 +78,8 @@ std::string to_json(const RunSummary& s) {
   json["start_energy"] = s.start_energy;
   json["end_energy"] = s.end_energy;
   json["largest_speed"] = s.largest_speed;
+  json["probes"] = nlohmann::ordered_json::object();
+  for (const auto& [name, x] : s.probes) json["probes"][name] = {{"x", x[0]}, {"y", x[1]}, {"z", x[2]}};
   json["frames"] = s.frames;
   json["peak_memory"] = s.peak_memory;
   for (const auto& [part, seconds] : seconds_by_part(s)) json["seconds"][part] = seconds;

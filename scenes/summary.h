@@ -1,6 +1,7 @@
 #pragma once
 // What a whole run did and cost.
 
+#include <array>
 #include <limits>
 #include <string>
 #include <utility>
@@ -28,9 +29,10 @@ struct RunSummary {
   // J, largest rise of kinetic and stored energy in a step, less what a change of barrier stiffness added; at most 0
   // when the energy never rose by itself.
   double max_energy_rise = -std::numeric_limits<double>::infinity();
-  double start_energy = 0;   // J
-  double end_energy = 0;     // J
-  double largest_speed = 0;  // m/s, of any vertex at the end
+  double start_energy = 0;                                            // J
+  double end_energy = 0;                                              // J
+  double largest_speed = 0;                                           // m/s, of any vertex at the end
+  std::vector<std::pair<std::string, std::array<double, 3>>> probes;  // m, at the end, by name
   int frames = 0;
   long peak_memory = 0;  // bytes, of the process
   BuildSeconds build;

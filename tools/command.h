@@ -20,6 +20,7 @@ void add_check_command(CLI::App& app, Run& run);
 void add_show_command(CLI::App& app, Run& run);
 void add_cost_command(CLI::App& app, Run& run);
 void add_eval_command(CLI::App& app, Run& run);
+void add_batch_command(CLI::App& app, Run& run);
 void add_bench_command(CLI::App& app, Run& run);
 void add_compile_command(CLI::App& app, Run& run);
 void add_accuracy_command(CLI::App& app, Run& run);

@@ -69,6 +69,7 @@ int run_command_line(std::vector<std::string> arguments, std::ostream& out, std:
   app.require_subcommand(1);
   Run run;
   add_run_command(app, run);
+  add_batch_command(app, run);
   add_check_command(app, run);
   add_show_command(app, run);
   add_compile_command(app, run);

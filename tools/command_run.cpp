@@ -7,7 +7,6 @@
 #include <ostream>
 #include <stdexcept>
 
-#include "scenes/scene_reader.h"
 #include "tools/choices.h"
 #include "tools/command.h"
 #include "tools/scene_run.h"
@@ -18,7 +17,7 @@ namespace {
 int run_it(SceneRun options, bool quiet, std::ostream& out) {
   if (!quiet) options.progress = &out;
   const RunSummary summary = run_scene_file(options);
-  const std::string folder = folder_of(options, read_scene(options.file));
+  const std::string folder = folder_of(options, changed_scene(options));
   if (!quiet) out << to_text(summary);
   out << fmt::format("output: {}\n", folder) << std::flush;
   if (!summary.failure.empty()) throw std::runtime_error(fmt::format("{}: {}", options.file, summary.failure));
@@ -35,6 +34,10 @@ void add_run_command(CLI::App& app, Run& run) {
   auto threads = std::make_shared<std::optional<int>>();
   command->add_option("scene", options->file, "a scene file (.toml)")->required();
   command->add_option("--out", options->folder, "folder for the results; default: as the scene says, or out/NAME");
+  command->add_option(
+      "--set", options->changes,
+      "PATH=VALUE in place of what the scene says, as time.dt=0.005 or object.beam.energy.0.E=\"2 MPa\"; "
+      "may be given several times");
   command->add_option("--threads", *threads, "threads to use; default: all cores");
   command->add_flag("--verify", options->verify,
                     "test all surfaces for intersections after every step, in exact arithmetic; one ends the run");

@@ -3,42 +3,18 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <csignal>
 #include <ostream>
 
 #include "runtime/lanes/lanes.h"
 #include "runtime/output/progress.h"
 #include "scenes/scene_reader.h"
+#include "scenes/scene_text.h"
 #include "tools/choices.h"
 #include "tools/installation.h"
+#include "tools/interrupt.h"
 
 namespace ergon {
 namespace {
-
-volatile std::sig_atomic_t interrupted = 0;
-
-// While it lives, the first interrupt asks the run to end after the step it is at; a second one ends the process.
-class InterruptGuard {
- public:
-  InterruptGuard() {
-    interrupted = 0;
-    struct sigaction action {};
-    action.sa_handler = [](int) { interrupted = 1; };
-    action.sa_flags = static_cast<int>(SA_RESETHAND);
-    sigaction(SIGINT, &action, &old_int_);
-    sigaction(SIGTERM, &action, &old_term_);
-  }
-  ~InterruptGuard() {
-    sigaction(SIGINT, &old_int_, nullptr);
-    sigaction(SIGTERM, &old_term_, nullptr);
-  }
-  InterruptGuard(const InterruptGuard&) = delete;
-  InterruptGuard& operator=(const InterruptGuard&) = delete;
-
- private:
-  struct sigaction old_int_ {};
-  struct sigaction old_term_ {};
-};
 
 std::string start_line(const Scene& scene, const BuiltScene& built) {
   int cells = 0;
@@ -54,8 +30,19 @@ std::string folder_of(const SceneRun& options, const Scene& scene) {
   return options.folder.empty() ? output_folder(scene) : options.folder;
 }
 
+Scene changed_scene(const SceneRun& options) {
+  if (options.changes.empty()) return read_scene(options.file);
+  SceneText text(options.file);
+  const Place place{"--set", 0, 0};
+  for (const std::string& change : options.changes) {
+    const auto [path, value] = read_change(change, place);
+    text.set(path, *value.get("value"), place);
+  }
+  return text.read();
+}
+
 RunSummary run_scene_file(const SceneRun& options) {
-  const Scene scene = read_scene(options.file);
+  const Scene scene = changed_scene(options);
   RunOptions run;
   run.folder = folder_of(options, scene);
   if (!run.folder.empty()) prepare_output(run.folder);
@@ -68,8 +55,8 @@ RunSummary run_scene_file(const SceneRun& options) {
       [&](const Frame& faults) {
         if (!options.intersections.empty()) write_vtu(options.intersections, faults);
       });
-  InterruptGuard guard;
-  run.stop = [] { return interrupted != 0; };
+  const InterruptGuard guard;
+  run.stop = was_interrupted;
   run.verify = options.verify;
   if (options.progress == nullptr) return run_scene(scene, built, run);
 

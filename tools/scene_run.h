@@ -4,6 +4,7 @@
 #include <functional>
 #include <iosfwd>
 #include <string>
+#include <vector>
 
 #include "scenes/run.h"
 
@@ -11,12 +12,16 @@ namespace ergon {
 
 struct SceneRun {
   std::string file;
+  std::vector<std::string> changes;  // "PATH=VALUE", as SceneText::set
   std::string folder;                // ""; as the scene says
   bool write = true;                 // false: no frames, no report
   std::ostream* progress = nullptr;  // null: none
   bool verify = false;               // RunOptions::verify
   std::string intersections;         // file (.vtu) for a mesh of what intersects at the start; "": none
 };
+
+// The scene with its changes. Throws SourceError.
+Scene changed_scene(const SceneRun& options);
 
 // Throws SourceError, InputError and OutputError. Ends early, with `stopped` in the summary, when the process is
 // interrupted (SIGINT, SIGTERM).

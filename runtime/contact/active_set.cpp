@@ -51,7 +51,10 @@ class Finder {
         const PointTriangleDistance d = point_triangle_distance(at(p), at(t[0]), at(t[1]), at(t[2]));
         gap2 = d.gap2, part = d.part;
       }
-      if (near(gap2, p, t[0])) add_point_triangle(point, triangle, part);
+      if (near(gap2, p, t[0])) {
+        weight_ = weight_of_point(point);
+        add_point_triangle(point, triangle, part);
+      }
     }
   }
 
@@ -66,7 +69,10 @@ class Finder {
         const EdgeEdgeDistance d = edge_edge_distance(at(a[0]), at(a[1]), at(b[0]), at(b[1]));
         gap2 = d.gap2, parts = d.part_a | d.part_b << 2;
       }
-      if (near(gap2, a[0], b[0])) add_edge_edge(pairs[i][0], pairs[i][1], parts & 3u, parts >> 2, room_.sine2[i]);
+      if (near(gap2, a[0], b[0])) {
+        weight_ = (weight_of_edge(pairs[i][0]) + weight_of_edge(pairs[i][1])) / 2;
+        add_edge_edge(pairs[i][0], pairs[i][1], parts & 3u, parts >> 2, room_.sine2[i]);
+      }
     }
   }
 
@@ -85,13 +91,23 @@ class Finder {
     const auto& e = surface_.edges[static_cast<size_t>(edge)];
     const PointEdgeDistance d = point_edge_distance(at(p), at(e[0]), at(e[1]));
     if (!near(d.gap2, p, e[0])) return;
+    weight_ = weight_of_point(point);
     if (d.part == 3) return add_point_edge(p, e[0], e[1]);
     add_point_point(p, e[d.part - 1]);
   }
 
   void point_point(int point_a, int point_b) {
     const int p = surface_.points[static_cast<size_t>(point_a)], q = surface_.points[static_cast<size_t>(point_b)];
-    if (near((x_.col(p) - x_.col(q)).squaredNorm(), p, q)) add_point_point(p, q);
+    if (!near((x_.col(p) - x_.col(q)).squaredNorm(), p, q)) return;
+    weight_ = (weight_of_point(point_a) + weight_of_point(point_b)) / 2;
+    add_point_point(p, q);
+  }
+
+  float weight_of_point(int point) const {
+    return surface_.point_weight.empty() ? 1 : static_cast<float>(surface_.point_weight[static_cast<size_t>(point)]);
+  }
+  float weight_of_edge(int edge) const {
+    return surface_.edge_weight.empty() ? 1 : static_cast<float>(surface_.edge_weight[static_cast<size_t>(edge)]);
   }
 
   Vector3d at(int vertex) const { return x_.col(vertex); }
@@ -114,7 +130,7 @@ class Finder {
     const auto& t = surface_.triangles[static_cast<size_t>(triangle)];
     switch (part) {
       case 7:
-        return found_[kPointTriangle].push_back({point, key_of(triangle)});
+        return found_[kPointTriangle].push_back({point, weight_, key_of(triangle)});
       case 3:
       case 5:
       case 6:
@@ -126,21 +142,24 @@ class Finder {
 
   // sine2: |cross(a, b)|^2, m^4.
   void add_edge_edge(int edge_a, int edge_b, unsigned part_a, unsigned part_b, double sine2) {
-    if (part_a == 3 && part_b == 3) return found_[kEdgeEdge].push_back({edge_a, key_of(edge_b)});
+    if (part_a == 3 && part_b == 3) return found_[kEdgeEdge].push_back({edge_a, weight_, key_of(edge_b)});
     const auto &a = surface_.edges[static_cast<size_t>(edge_a)], &b = surface_.edges[static_cast<size_t>(edge_b)];
     const size_t end_a = part_a - 1, end_b = part_b - 1;
     if (sine2 < kMollified * rest_length2(a) * rest_length2(b)) {
       const std::uint64_t key = key_of(edge_b) << 2;
-      if (part_a != 3 && part_b != 3) return found_[kParallelPointPoint].push_back({edge_a, key | end_a << 1 | end_b});
-      return found_[kParallelPointEdge].push_back({edge_a, key | (part_a != 3 ? end_a : 2 | end_b)});
+      if (part_a != 3 && part_b != 3)
+        return found_[kParallelPointPoint].push_back({edge_a, weight_, key | end_a << 1 | end_b});
+      return found_[kParallelPointEdge].push_back({edge_a, weight_, key | (part_a != 3 ? end_a : 2 | end_b)});
     }
     if (part_a == 3) return add_point_edge(b[end_b], a[0], a[1]);
     if (part_b == 3) return add_point_edge(a[end_a], b[0], b[1]);
     add_point_point(a[end_a], b[end_b]);
   }
 
-  void add_point_edge(int p, int e0, int e1) { found_[kPointEdge].push_back({p, pair_key(e0, e1)}); }
-  void add_point_point(int p, int q) { found_[kPointPoint].push_back({std::min(p, q), key_of(std::max(p, q))}); }
+  void add_point_edge(int p, int e0, int e1) { found_[kPointEdge].push_back({p, weight_, pair_key(e0, e1)}); }
+  void add_point_point(int p, int q) {
+    found_[kPointPoint].push_back({std::min(p, q), weight_, key_of(std::max(p, q))});
+  }
 
   const CollisionSurface& surface_;
   const Matrix3Xd &x_, &X_;
@@ -148,6 +167,7 @@ class Finder {
   FoundStencils& found_;
   const lanes::DistanceOperations& operations_ = lanes::distance_operations(lanes::best_lanes());
   lanes::DistanceRoom room_;
+  float weight_ = 1;  // of the pair looked at
   double smallest_ = std::numeric_limits<double>::infinity();
 };
 
@@ -158,10 +178,10 @@ void fill(const CollisionSurface& surface, Case which, size_t bins, const Vertic
   list.vertices.clear();
   list.multiplicity.clear();
   list.offset.clear();
-  merge_stencils(active.found, which, bins, active.room, [&](int bin, std::uint64_t key, int count) {
+  merge_stencils(active.found, which, bins, active.room, [&](int bin, std::uint64_t key, double weight) {
     const auto stencil = vertices(static_cast<size_t>(bin), key);
     list.vertices.insert(list.vertices.end(), stencil.begin(), stencil.end());
-    list.multiplicity.push_back(count);
+    list.multiplicity.push_back(weight);
     list.offset.push_back(surface.offset(surface.object[static_cast<size_t>(stencil.front())],
                                          surface.object[static_cast<size_t>(stencil.back())]));
   });

@@ -18,7 +18,7 @@ namespace ergon {
 struct ActiveList {
   int points = 0;                    // per stencil
   std::vector<int> vertices;         // of the system
-  std::vector<double> multiplicity;  // per stencil: how many pairs of primitives are nearest in these parts
+  std::vector<double> multiplicity;  // per stencil: the sum of the weights of the pairs that are nearest in these parts
   std::vector<double> offset;        // m, per stencil
   size_t count() const { return multiplicity.size(); }
 };

@@ -20,6 +20,9 @@ struct CollisionSurface {
   std::vector<char> moving;  // per vertex of the system: it has a degree of freedom or is scripted
   // Primitives of which no vertex is `moving` are never tested against one another, nor are those that share a vertex.
 
+  // Per point and edge: what a pair of it with a triangle, or the mean of two edges, counts; empty: 1.
+  std::vector<double> point_weight, edge_weight;
+
   std::vector<double> radius;           // m, per object: half the thickness, by which its primitives are fattened
   std::vector<std::vector<char>> meet;  // per pair of objects, symmetric: may they touch; on the diagonal: themselves
   std::vector<std::string> names;       // per object, for messages

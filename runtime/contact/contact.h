@@ -26,6 +26,12 @@ struct FrictionChange {
   double fraction() const { return change == 0 ? 0 : sum > 0 ? change / sum : 1; }
 };
 
+// On every vertex of the system, N.
+struct ContactForces {
+  Eigen::Matrix3Xd normal;  // of the barriers
+  Eigen::Matrix3Xd friction;
+};
+
 class Contact {
  public:
   virtual ~Contact() = default;
@@ -52,6 +58,7 @@ class Contact {
   virtual bool adapt(const Eigen::Matrix3Xd& x) = 0;
 
   virtual bool owns(int potential) const = 0;  // index in the system: its lags are set here
+  virtual bool rubs(int potential) const = 0;  // of those it owns: friction
   virtual bool has_friction() const = 0;       // some pair has a coefficient of friction
   virtual ContactStatus status(const Eigen::Matrix3Xd& x) = 0;
   // What was left out, "part: reason".

@@ -44,6 +44,10 @@ bool Contacts::owns(int potential) const {
   return std::any_of(parts_.begin(), parts_.end(), [potential](const auto& part) { return part->owns(potential); });
 }
 
+bool Contacts::rubs(int potential) const {
+  return std::any_of(parts_.begin(), parts_.end(), [potential](const auto& part) { return part->rubs(potential); });
+}
+
 bool Contacts::has_friction() const {
   return std::any_of(parts_.begin(), parts_.end(), [](const auto& part) { return part->has_friction(); });
 }

@@ -19,6 +19,7 @@ class Contacts : public Contact {
   double gap_change(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& direction) override;
   bool adapt(const Eigen::Matrix3Xd& x) override;
   bool owns(int potential) const override;
+  bool rubs(int potential) const override;
   bool has_friction() const override;
   ContactStatus status(const Eigen::Matrix3Xd& x) override;
   std::vector<std::string> skipped() const override;

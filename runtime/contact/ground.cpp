@@ -255,6 +255,11 @@ bool GroundContact::owns(int potential) const {
                      [potential](const Side& side) { return side.barrier == potential || side.friction == potential; });
 }
 
+bool GroundContact::rubs(int potential) const {
+  return std::any_of(sides_.begin(), sides_.end(),
+                     [potential](const Side& side) { return side.friction >= 0 && side.friction == potential; });
+}
+
 bool GroundContact::has_friction() const {
   return std::any_of(sides_.begin(), sides_.end(), [](const Side& side) { return side.friction >= 0; });
 }

@@ -51,6 +51,7 @@ class GroundContact : public Contact {
   bool adapt(const Eigen::Matrix3Xd& x) override;
 
   bool owns(int potential) const override;
+  bool rubs(int potential) const override;
   bool has_friction() const override;
   ContactStatus status(const Eigen::Matrix3Xd& x) override;
   std::vector<std::string> skipped() const override;

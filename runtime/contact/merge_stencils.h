@@ -1,9 +1,10 @@
 #pragma once
-// Stencils found in any order and any number of times become lists in which each stands once, counted, in ascending
-// order.
+// Stencils found in any order and any number of times become lists in which each stands once, with the sum of its
+// weights, in ascending order.
 
 #include <algorithm>
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <vector>
 
@@ -12,6 +13,7 @@ namespace ergon {
 // A stencil by two numbers; bins are few enough to be counted.
 struct StencilKey {
   int bin;
+  float weight;
   std::uint64_t key;
 };
 
@@ -21,11 +23,16 @@ using FoundStencils = std::array<std::vector<StencilKey>, 6>;
 // Room that is kept from one merge to the next.
 struct MergeRoom {
   std::vector<size_t> starts;
-  std::vector<std::uint64_t> keys;
+  struct Weighted {
+    std::uint64_t key;
+    float weight;
+    auto operator<=>(const Weighted&) const = default;
+  };
+  std::vector<Weighted> keys;
 };
 
-// Calls emit(bin, key, count) for each stencil of a case that any of `found` has: bins in ascending order, keys within
-// one.
+// Calls emit(bin, key, weight) for each stencil of a case that any of `found` has: bins in ascending order, keys within
+// one. Weights are added in ascending order, whatever that in which they were found.
 template <class Emit>
 void merge_stencils(const std::vector<FoundStencils>& found, size_t which, size_t bins, MergeRoom& room,
                     const Emit& emit) {
@@ -37,17 +44,18 @@ void merge_stencils(const std::vector<FoundStencils>& found, size_t which, size_
   room.keys.resize(room.starts[bins + 1]);
   // Each start advances to its end while its bin is filled.
   for (const FoundStencils& part : found) {
-    for (const StencilKey& each : part[which]) room.keys[room.starts[static_cast<size_t>(each.bin) + 1]++] = each.key;
+    for (const StencilKey& each : part[which])
+      room.keys[room.starts[static_cast<size_t>(each.bin) + 1]++] = {each.key, each.weight};
   }
   for (size_t bin = 0; bin < bins; ++bin) {
-    std::uint64_t* const first = room.keys.data() + room.starts[bin];
-    std::uint64_t* const last = room.keys.data() + room.starts[bin + 1];
+    MergeRoom::Weighted* const first = room.keys.data() + room.starts[bin];
+    MergeRoom::Weighted* const last = room.keys.data() + room.starts[bin + 1];
     std::sort(first, last);
-    for (const std::uint64_t* at = first; at != last;) {
-      const std::uint64_t key = *at;
-      int count = 0;
-      for (; at != last && *at == key; ++at) ++count;
-      emit(static_cast<int>(bin), key, count);
+    for (const MergeRoom::Weighted* at = first; at != last;) {
+      const std::uint64_t key = at->key;
+      double weight = 0;
+      for (; at != last && at->key == key; ++at) weight += at->weight;
+      emit(static_cast<int>(bin), key, weight);
     }
   }
 }

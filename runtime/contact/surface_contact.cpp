@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/contact/area_weights.h"
 #include "runtime/contact/step_bound.h"
 #include "runtime/error.h"
 
@@ -13,9 +14,6 @@ namespace ergon {
 namespace {
 
 constexpr double kept_gap = 0.1;          // of the present gap, after any step
-constexpr double loaded_gap = 0.1;        // of dhat, where a barrier bears the forces that its stiffness is chosen for
-constexpr double too_small = 0.05;        // of dhat: pairs that start a step so close get stiffer
-constexpr double fastest_growth = 4;      // of a stiffness, from step to step
 constexpr double smallest_useful = 1e-6;  // of dhat: smaller gaps double an adaptive stiffness
 constexpr double roundings = 1e4;         // or gaps of fewer roundings of a position than this
 constexpr double edges_per_pass = 8;      // of mean length, that a vertex moves within one pass of detection
@@ -40,7 +38,7 @@ StencilData rest_data(const ErgonKernel& kernel, const ActiveList& list) {
   return {};
 }
 
-void check(const SurfaceContactOptions& options) {
+SurfaceContactOptions checked(SurfaceContactOptions options) {
   const auto reject = [](const char* what, double value, const char* unit, const char* range) {
     throw InputError(fmt::format("contact: {} is {:g}{}; it must be {}", what, value, unit, range));
   };
@@ -48,16 +46,7 @@ void check(const SurfaceContactOptions& options) {
   if (!(options.epsv > 0) || !std::isfinite(options.epsv)) reject("epsv", options.epsv, " m/s", "above 0");
   if (!(options.stiffness >= 0) || !std::isfinite(options.stiffness))
     reject("stiffness", options.stiffness, "", "above 0, or 0 to have it chosen");
-}
-
-// A barrier whose force does not grow without bound lets surfaces meet.
-void check_infinite(const BarrierProbe& probe, double dhat) {
-  constexpr double near = 1e-3, nearer = 1e-9, growth = 10;  // of dhat; a logarithm's force grows a millionfold
-  if (-probe.at(nearer * dhat).slope > growth * -probe.at(near * dhat).slope) return;
-  throw InputError(fmt::format(
-      "contact: the barrier's force at a gap of {:g} dhat is {:.3g} N per unit of its stiffness and does not "
-      "grow towards contact, so that it keeps nothing apart; use one that is infinite there, as log_barrier",
-      nearer, -probe.at(nearer * dhat).slope));
+  return options;
 }
 
 }  // namespace
@@ -67,18 +56,16 @@ SurfaceContact::SurfaceContact(System& system, CollisionSurface surface, const S
                                const Eigen::Vector3d& gravity)
     : system_(&system),
       surface_(std::move(surface)),
-      options_(std::move(options)),
+      options_(checked(std::move(options))),
       X_(X),
       broad_(surface_),
-      probe_(laws.barrier[0], options_.dhat) {
-  check(options_);
-  check_infinite(probe_, options_.dhat);
+      probe_(laws.barrier[0], options_.dhat),
+      kappa_(probe_, options_.dhat, static_cast<int>(surface_.radius.size()), options_.stiffness),
+      mass_(mass) {
   for (int v = 0; v < system.vertices(); ++v) {
     if (system.block_of(v) >= 0) weight_ += mass[v] * gravity.norm();
   }
   const auto objects = static_cast<Eigen::Index>(surface_.radius.size());
-  kappa_.setConstant(objects, objects, options_.stiffness);
-  last_gap_.setConstant(objects, objects, infinity);
   start_sum_.setZero(objects, objects);
   piece_ = std::max(edges_per_pass * mean_edge(surface_, X), options_.dhat);
   for (int kind = 0; kind < kContactKinds; ++kind) {
@@ -149,70 +136,50 @@ void SurfaceContact::give_stiffness() {
   }
 }
 
-// The stiffness of a pair of objects is the larger of two: that at which the barrier, at a tenth of dhat, is as stiff
-// as the softer object's surface is against the motion of one vertex (its Hessian's mean over surface vertices:
-// elasticity and inertia); and that at which one stencil bears there the weight of all that moves.
-void SurfaceContact::choose_stiffness(const Eigen::Matrix3Xd& x) {
+// Of each object at x.
+std::vector<SurfaceResistance> SurfaceContact::resistance(const Eigen::Matrix3Xd& x, double dt) {
   Eigen::Matrix3Xd gradient;
   BlockMatrix matrix;
   system_->hessian(x, Projection::clamp, gradient, matrix);
-  const Eigen::Index objects = kappa_.rows();
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(objects), count = Eigen::VectorXd::Zero(objects);
+  std::vector<SurfaceResistance> sum(surface_.radius.size());
+  std::vector<double> count(sum.size(), 0);
   for (const int v : surface_.points) {
     const int block = system_->block_of(v);
     if (block < 0) continue;
-    const int object = surface_.object[static_cast<size_t>(v)];
+    const auto object = static_cast<size_t>(surface_.object[static_cast<size_t>(v)]);
     for (int c = 0; c < 3; ++c) {
       const int entry = matrix.column_start()[static_cast<size_t>(3 * block + c)] + c;  // the diagonal block is first
-      sum[object] += matrix.values()[static_cast<size_t>(entry)] / 3;
+      sum[object].hessian += matrix.values()[static_cast<size_t>(entry)] / 3;
     }
+    sum[object].inertia += mass_[v] / (dt * dt);
     count[object] += 1;
   }
-  const BarrierAt barrier = probe_.at(loaded_gap * options_.dhat);
-  const auto stiffness = [&](Eigen::Index object) {
-    return count[object] > 0 ? sum[object] / count[object] : infinity;
-  };
-  for (Eigen::Index a = 0; a < objects; ++a) {
-    for (Eigen::Index b = 0; b < objects; ++b) {
-      const double softer = std::min(stiffness(a), stiffness(b));
-      kappa_(a, b) = std::max(softer < infinity ? softer / barrier.curvature : 0, weight_ / -barrier.slope);
-    }
+  const std::vector<double> weight = mean_weights(surface_);
+  for (size_t object = 0; object < sum.size(); ++object) {
+    const double n = count[object];
+    sum[object] = n > 0 ? SurfaceResistance{sum[object].hessian / n, sum[object].inertia / n, weight[object]}
+                        : SurfaceResistance{infinity, infinity, weight[object]};
   }
+  return sum;
 }
 
-void SurfaceContact::begin_step(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd&, double) {
+void SurfaceContact::begin_step(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd&, double dt) {
   energy_added_ = 0;
   reached_ = false;
-  last_gap_.setConstant(infinity);
   start_ = x;
   start_sum_.resize(0, 0);
-  if (options_.stiffness > 0) return;
-  if (!(kappa_(0, 0) > 0)) choose_stiffness(x);
-  stiffen(x);
-}
-
-// Where a barrier bears more than it was chosen for, its gap is small, and Newton's method slow: the way that a point
-// slides over the edges of another surface has kinks of the size of the gap. Such pairs of objects get, before a step,
-// the stiffness that moves their smallest gap towards a tenth of dhat.
-void SurfaceContact::stiffen(const Eigen::Matrix3Xd& x) {
+  if (kappa_.fixed()) return;
   find(x);
-  const Eigen::MatrixXd gap = smallest_gaps(x);
-  const Eigen::MatrixXd before = kappa_;
-  for (Eigen::Index a = 0; a < gap.rows(); ++a) {
-    for (Eigen::Index b = 0; b < gap.cols(); ++b) {
-      if (!(gap(a, b) < too_small * options_.dhat)) continue;
-      const double ratio = probe_.at(gap(a, b)).slope / probe_.at(loaded_gap * options_.dhat).slope;
-      kappa_(a, b) *= std::clamp(ratio, 1.0, fastest_growth);
-    }
-  }
-  if (kappa_ == before) return;
-  const Eigen::MatrixXd added = (kappa_ - before).cwiseProduct(unit_energies(x));
+  const Eigen::MatrixXd gaps = smallest_gaps(x), before = kappa_.values();
+  kappa_.begin_step(kappa_.needs_resistance() ? resistance(x, dt) : std::vector<SurfaceResistance>{}, weight_, gaps);
+  if (kappa_.values() == before || !(before(0, 0) > 0)) return;
+  const Eigen::MatrixXd added = (kappa_.values() - before).cwiseProduct(unit_energies(x));
   energy_added_ += (added.sum() + added.trace()) / 2;
 }
 
 // Of the active stencils, per pair of objects, symmetric; +inf without any.
 Eigen::MatrixXd SurfaceContact::smallest_gaps(const Eigen::Matrix3Xd& x) const {
-  Eigen::MatrixXd least = Eigen::MatrixXd::Constant(kappa_.rows(), kappa_.cols(), infinity);
+  Eigen::MatrixXd least = Eigen::MatrixXd::Constant(kappa_.values().rows(), kappa_.values().cols(), infinity);
   for_each_active([&](ContactKind kind, size_t i, const int* vertices, std::array<int, 2> objects) {
     const double gap = contact_frame(kind, vertices, x).distance - list_of(active_, kind).offset[i];
     double& known = least(objects[0], objects[1]);
@@ -224,7 +191,7 @@ Eigen::MatrixXd SurfaceContact::smallest_gaps(const Eigen::Matrix3Xd& x) const {
 // J per unit of kappa that each pair of objects holds at x.
 Eigen::MatrixXd SurfaceContact::unit_energies(const Eigen::Matrix3Xd& x) {
   find(x);
-  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(kappa_.rows(), kappa_.cols());
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(kappa_.values().rows(), kappa_.values().cols());
   for_each_active([&](ContactKind kind, size_t i, const int* vertices, std::array<int, 2> objects) {
     const ContactFrame frame = contact_frame(kind, vertices, x);
     const ActiveList& list = list_of(active_, kind);
@@ -266,25 +233,17 @@ double SurfaceContact::gap_change(const Eigen::Matrix3Xd& x, const Eigen::Matrix
 }
 
 bool SurfaceContact::adapt(const Eigen::Matrix3Xd& x) {
-  if (options_.stiffness > 0) return false;
-  const Eigen::MatrixXd least = smallest_gaps(x);
+  if (kappa_.fixed()) return false;
   double extent = 0;
   for_each_active([&](ContactKind, size_t, const int* vertices, std::array<int, 2>) {
     extent = std::max(extent, x.col(vertices[0]).cwiseAbs().maxCoeff());
   });
-  const double limit =
+  const double resolved =
       std::max(smallest_useful * options_.dhat, roundings * std::numeric_limits<double>::epsilon() * extent);
-  const Eigen::MatrixXd before = kappa_;
-  for (Eigen::Index a = 0; a < least.rows(); ++a) {
-    for (Eigen::Index b = 0; b < least.cols(); ++b) {
-      const double gap = least(a, b);
-      if (gap < limit && gap < last_gap_(a, b) && last_gap_(a, b) < limit) kappa_(a, b) *= 2;
-      last_gap_(a, b) = gap;
-    }
-  }
-  if (kappa_ == before) return false;
+  const Eigen::MatrixXd before = kappa_.values();
+  if (!kappa_.adapt(smallest_gaps(x), resolved)) return false;
   if (start_sum_.size() == 0) start_sum_ = unit_energies(start_);
-  const Eigen::MatrixXd added = (kappa_ - before).cwiseProduct(start_sum_);
+  const Eigen::MatrixXd added = (kappa_.values() - before).cwiseProduct(start_sum_);
   energy_added_ += (added.sum() + added.trace()) / 2;
   set_active(x);
   return true;
@@ -318,9 +277,11 @@ FrictionChange SurfaceContact::lag_friction(const Eigen::Matrix3Xd& x, const Eig
 }
 
 bool SurfaceContact::owns(int potential) const {
-  return (friction_ && friction_->owns(potential)) ||
+  return rubs(potential) ||
          std::any_of(laws_.begin(), laws_.end(), [&](const Law& law) { return law.potential == potential; });
 }
+
+bool SurfaceContact::rubs(int potential) const { return friction_ && friction_->owns(potential); }
 
 bool SurfaceContact::has_friction() const { return friction_.has_value(); }
 
@@ -342,7 +303,7 @@ ContactStatus SurfaceContact::status(const Eigen::Matrix3Xd& x) {
   for_each_active([&](ContactKind, size_t, const int*, std::array<int, 2>) { ++status.active; });
   status.rubbing = friction_ ? friction_->count() : 0;
   status.smallest_gap = active_.smallest_gap;
-  status.stiffness = kappa_.size() > 0 ? kappa_.maxCoeff() : 0;
+  status.stiffness = kappa_.values().size() > 0 ? kappa_.values().maxCoeff() : 0;
   status.energy_added = energy_added_;
   return status;
 }

@@ -17,6 +17,7 @@
 #include "runtime/contact/broad_phase.h"
 #include "runtime/contact/contact.h"
 #include "runtime/contact/contact_frame.h"
+#include "runtime/contact/pair_stiffness.h"
 #include "runtime/contact/surface_friction.h"
 #include "runtime/system.h"
 
@@ -50,9 +51,10 @@ class SurfaceContact : public Contact {
   // Every pair keeps at least a tenth of its present gap.
   double largest_step(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& direction) override;
   double gap_change(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& direction) override;
-  // Doubles the stiffness of pairs of objects whose smallest gap has come near the rounding of positions.
+  // Raises the stiffness of pairs of objects whose smallest gap has become too small for the one that they have.
   bool adapt(const Eigen::Matrix3Xd& x) override;
   bool owns(int potential) const override;
+  bool rubs(int potential) const override;
   bool has_friction() const override;
   ContactStatus status(const Eigen::Matrix3Xd& x) override;
   std::vector<std::string> skipped() const override;
@@ -77,8 +79,7 @@ class SurfaceContact : public Contact {
   std::array<int, 2> objects_of(ContactKind kind, const int* vertices) const;
   void find(const Eigen::Matrix3Xd& x);
   Eigen::MatrixXd unit_energies(const Eigen::Matrix3Xd& x);
-  void choose_stiffness(const Eigen::Matrix3Xd& x);
-  void stiffen(const Eigen::Matrix3Xd& x);
+  std::vector<SurfaceResistance> resistance(const Eigen::Matrix3Xd& x, double dt);
   Eigen::MatrixXd smallest_gaps(const Eigen::Matrix3Xd& x) const;
   void give_stiffness();
 
@@ -89,11 +90,11 @@ class SurfaceContact : public Contact {
   double weight_ = 0;  // N, of all that moves
   BroadPhase broad_;
   BarrierProbe probe_;
+  PairStiffness kappa_;
+  Eigen::VectorXd mass_;  // kg
   std::array<Law, kContactKinds> laws_;
   std::optional<SurfaceFriction> friction_;
   ActiveSet active_;
-  Eigen::MatrixXd kappa_;      // per pair of objects; zero while open
-  Eigen::MatrixXd last_gap_;   // m, smallest at the last adapt
   Eigen::Matrix3Xd start_;     // m, at the start of the step
   Eigen::MatrixXd start_sum_;  // unit_energies there, once asked for
   double piece_ = 0;           // m, motion that one pass of detection looks at

@@ -38,6 +38,10 @@ std::string to_json(const ReportRecord& record) {
   json["skipped"] = skipped;
   json["smallest_gap"] = record.smallest_gap ? nlohmann::ordered_json(*record.smallest_gap) : nlohmann::ordered_json();
   json["contacts"] = record.contacts;
+  for (const ObjectForces& sum : record.forces) {
+    json["forces"][sum.object] = {{"contact", sum.contact}, {"friction", sum.friction}};
+  }
+  for (const auto& [name, x] : record.probes) json["probes"][name] = x;
   for (const auto& [name, number] : record.more) json[name] = number;
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }

@@ -1,6 +1,7 @@
 #pragma once
 // What each time step did and cost, one JSON object per line.
 
+#include <array>
 #include <optional>
 #include <string>
 #include <utility>
@@ -12,6 +13,13 @@ namespace ergon {
 struct SkippedPart {
   std::string part;
   std::string reason;
+};
+
+// Sums of the forces on the vertices of one object, N.
+struct ObjectForces {
+  std::string object;
+  std::array<double, 3> contact{};
+  std::array<double, 3> friction{};
 };
 
 // One record. Numbers that are not finite become null.
@@ -28,12 +36,15 @@ struct ReportRecord {
   std::vector<SkippedPart> skipped;
   std::optional<double> smallest_gap;  // m; none without contact
   int contacts = 0;
-  std::vector<std::pair<std::string, double>> more;  // further numbers by name, last in the line
+  std::vector<std::pair<std::string, std::array<double, 3>>> probes;  // m, by name; none: left out of the line
+  std::vector<ObjectForces> forces;                                   // none: left out of the line
+  std::vector<std::pair<std::string, double>> more;                   // further numbers by name, last in the line
 };
 
 // The record as a line of JSON without its line end: {"step": .., "time": .., "dt": .., "converged": ..,
 // "newton_iterations": .., "linear_iterations": .., "residual": .., "energy": {term: J}, "seconds": {part: s},
-// "skipped": [{"part": .., "reason": ..}], "smallest_gap": .., "contacts": .., more ..}, keys in this order.
+// "skipped": [{"part": .., "reason": ..}], "smallest_gap": .., "contacts": .., "forces": {object: {"contact": [..],
+// "friction": [..]}}, "probes": {name: [..]}, more ..}, keys in this order.
 std::string to_json(const ReportRecord& record);
 
 // A .jsonl file to which lines are added one by one. Each line is handed to the system as a whole and at once, so that

@@ -131,6 +131,10 @@ Newton::Progress Newton::take_step(System& system, Eigen::Matrix3Xd& x, double s
   }
   progress.is_near = result.step_speed <= near_limit * options.tolerance;
   progress.is_last = result.step_speed <= options.tolerance && gaps_settled;
+  if (!(fraction > 0) && !progress.is_last) {
+    refuse_standstill(system, x, *contact, result);
+    return progress;
+  }
 
   const LineSearchInput input{.x = x,
                               .direction = direction_,
@@ -285,6 +289,18 @@ double Newton::find_direction(System& system, const Eigen::Matrix3Xd& x, const N
     result.worst_vertex = v;
   }
   return 0;
+}
+
+// A pair of parts cannot be shown to stay apart on any part of the step.
+void Newton::refuse_standstill(const System& system, const Eigen::Matrix3Xd& x, Contact& contact,
+                               NewtonResult& result) const {
+  const Largest worst = largest_free_component(system, direction_);
+  result.worst_vertex = worst.vertex;
+  result.reason = fmt::format(
+      "contact allows no part of a Newton step of {:.3g} m/s at vertex {}: the smallest gap is {:.3g} m, which "
+      "positions "
+      "hardly resolve; move the scene nearer to the origin, or raise the stiffness of contact",
+      result.step_speed, worst.vertex, contact.status(x).smallest_gap);
 }
 
 // The line search found no better state: at the limit of rounding that is the end, anywhere else a failure.

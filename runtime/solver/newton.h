@@ -108,6 +108,7 @@ class Newton {
   bool certainly_converged(const System& system, const NewtonOptions& options, NewtonResult& result) const;
   bool finishes_with_same_factor(System& system, Eigen::Matrix3Xd& x, const NewtonOptions& options, Contact* contact,
                                  NewtonResult& result);
+  void refuse_standstill(const System& system, const Eigen::Matrix3Xd& x, Contact& contact, NewtonResult& result) const;
   void give_up_line_search(System& system, const Eigen::Matrix3Xd& x, Contact* contact, bool is_last,
                            NewtonResult& result);
 

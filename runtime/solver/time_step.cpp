@@ -136,6 +136,7 @@ NewtonResult TimeStepper::solve(const State& state, Eigen::Matrix3Xd& x, StepRec
     record.shifts += result.shifts;
     record.indefinite += result.indefinite;
     add(record.seconds, result.seconds);
+    if (options_.record_forces && contact_) record.forces = forces(x);
     if (!friction || !result.converged) break;
 
     const Stopwatch watch(record.seconds.contact);
@@ -145,6 +146,21 @@ NewtonResult TimeStepper::solve(const State& state, Eigen::Matrix3Xd& x, StepRec
   }
   if (!friction) record.friction_iterations = 0;
   return result;
+}
+
+// Of contact on the vertices, before friction gets new normal forces: those that the solve balanced.
+ContactForces TimeStepper::forces(const Eigen::Matrix3Xd& x) {
+  std::vector<int> barriers, friction;
+  for (int i = 0; i < system_->potential_count(); ++i) {
+    if (contact_->owns(i)) (contact_->rubs(i) ? friction : barriers).push_back(i);
+  }
+  contact_->set_active(x);
+  ContactForces forces;
+  system_->gradient_of(barriers, x, forces.normal);
+  system_->gradient_of(friction, x, forces.friction);
+  forces.normal *= -1;
+  forces.friction *= -1;
+  return forces;
 }
 
 void TimeStepper::advance(State& state, const Eigen::Matrix3Xd& x) const {

@@ -10,6 +10,7 @@
 
 #include <Eigen/Core>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -37,6 +38,7 @@ struct StepOptions {
       0.05;  // no further solve when normal forces changed by less than this fraction of their sum
   Projection projection = Projection::clamp;
   bool project_on_demand = false;   // NewtonOptions::on_demand
+  bool record_forces = false;       // of contact, in the record of each step
   bool accept_unconverged = false;  // go on from the best state found; the record still says so
 };
 
@@ -75,6 +77,7 @@ struct StepRecord {
   double barrier_stiffness = 0;                                   // largest
   double energy_added = 0;                                        // J, by changes of barrier stiffness
   Energies energy;
+  std::optional<ContactForces> forces;  // at the end of the step, friction as the last solve had it
   StepSeconds seconds;
   std::vector<std::string> skipped;  // "part: reason"
 };
@@ -99,6 +102,7 @@ class TimeStepper {
   void set_lags(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& xhat);
   void begin_contact(const State& state, StepRecord& record);
   NewtonResult solve(const State& state, Eigen::Matrix3Xd& x, StepRecord& record);
+  ContactForces forces(const Eigen::Matrix3Xd& x);
   void advance(State& state, const Eigen::Matrix3Xd& x) const;
   void report(const State& state, const NewtonResult& result, StepRecord& record);
   Energies energies_of(const Evaluation& evaluation, const Eigen::Matrix3Xd& v) const;

@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "runtime/contact/area_weights.h"
 #include "runtime/mesh/mesh_build.h"
 #include "tests/runtime/contact_oracle.h"
 #include "tests/runtime/contact_soup.h"
@@ -291,8 +292,9 @@ std::pair<int, std::set<size_t>> expect_continuous(const CollisionSurface& surfa
   return {changes, seen};
 }
 
-TEST(ActiveSet, TheEnergyIsContinuousWhereNearestPartsChange) {
-  const Soup soup = make_soup({.cells = 2, .loose = 6, .noise = 0.03});
+void expect_continuous_soup(bool weighted) {
+  Soup soup = make_soup({.cells = 2, .loose = 6, .noise = 0.03});
+  if (weighted) weight_by_area(soup.surface, soup.x, 0.1);
   const auto [changes, seen] = expect_continuous(soup.surface, soup.x, 0.1, 12, [&](double time) {
     const double s = 0.3 + 0.3 * time;
     Matrix3Xd x = soup.x;
@@ -306,6 +308,49 @@ TEST(ActiveSet, TheEnergyIsContinuousWhereNearestPartsChange) {
   });
   EXPECT_GT(changes, 60);
   for (size_t k = 0; k < 4; ++k) EXPECT_TRUE(seen.contains(k)) << k;
+}
+
+TEST(ActiveSet, TheEnergyIsContinuousWhereNearestPartsChange) { expect_continuous_soup(false); }
+
+TEST(ActiveSet, TheWeightedEnergyIsContinuousWhereNearestPartsChange) { expect_continuous_soup(true); }
+
+// Two sheets of side 1 and n cells per side at half dhat, one turned over the other: the barrier's energy per unit of
+// stiffness.
+double energy_of_sheets(int n, bool weighted) {
+  constexpr double dhat = 1e-3;
+  const Mesh sheet = box_mesh(Element::tri3, {1, 1, 1}, {n, n, 1});
+  const int count = sheet.vertices();
+  CollisionSurface surface = make_surface({{"a", &sheet, 0, 0}, {"b", &sheet, count, 0}},
+                                          std::vector<char>(2 * static_cast<size_t>(count), 1));
+  Matrix3Xd x(3, 2 * count);
+  const Eigen::AngleAxisd turn(0.3, Vector3d::UnitZ());
+  x << sheet.X, (turn.toRotationMatrix() * sheet.X).colwise() + Vector3d(0.1, -0.2, dhat / 2);
+  if (weighted) weight_by_area(surface, x, dhat);
+  return energy_of(active_at(surface, x, x, dhat), x, x, dhat);
+}
+
+TEST(ActiveSet, WeightedByAreaTheEnergyDoesNotGrowWithTheMesh) {
+  const double coarse = energy_of_sheets(8, true), fine = energy_of_sheets(24, true);
+  EXPECT_NEAR(fine / coarse, 1, 0.1);
+  EXPECT_GT(energy_of_sheets(24, false) / energy_of_sheets(8, false), 7);
+}
+
+TEST(ActiveSet, AreasAreThoseOfTheSurface) {
+  const Mesh sheet = box_mesh(Element::tri3, {1, 1, 1}, {3, 2, 1}),
+             rod = box_mesh(Element::edge2, {1, 1, 1}, {4, 1, 1});
+  const int count = sheet.vertices();
+  Matrix3Xd X(3, count + 5);
+  X << sheet.X, rod.X;
+  CollisionSurface surface = make_surface({{"sheet", &sheet, 0, 0}, {"rod", &rod, count, 0.01}},
+                                          std::vector<char>(static_cast<size_t>(X.cols()), 1));
+  EXPECT_EQ(mean_weights(surface), (std::vector<double>{1, 1}));
+  weight_by_area(surface, X, 1e-3);
+  double points = 0, edges = 0;
+  for (const double w : surface.point_weight) points += w;
+  for (const double w : surface.edge_weight) edges += w;
+  EXPECT_NEAR(points, (1 + 0.02) / 4, 1e-12);  // the sheet's area and that of a strip of 20 mm
+  EXPECT_NEAR(edges, (1 + 0.02) / 2, 1e-12);
+  EXPECT_NEAR(mean_weights(surface)[0], 1.0 / 4 / count, 1e-12);
 }
 
 // Two rods slide along each other and swing through parallel.

@@ -161,6 +161,39 @@ TEST(Newton, SaysWhyItDidNotConverge) {
                                                    "last step is [0-9.]+ m/s at vertex [12]"));
 }
 
+// Contact that cannot show any motion to be free of collision.
+struct Blocked : Contact {
+  void begin_step(const Matrix3Xd&, const Matrix3Xd&, double) override {}
+  FrictionChange lag_friction(const Matrix3Xd&, const Matrix3Xd&, double) override { return {}; }
+  void set_active(const Matrix3Xd&) override {}
+  double largest_step(const Matrix3Xd&, const Matrix3Xd&) override { return 0; }
+  double gap_change(const Matrix3Xd&, const Matrix3Xd&) override { return 0; }
+  bool adapt(const Matrix3Xd&) override { return false; }
+  bool owns(int) const override { return false; }
+  bool rubs(int) const override { return false; }
+  bool has_friction() const override { return false; }
+  ContactStatus status(const Matrix3Xd&) override { return {.reached = true, .active = 1, .smallest_gap = 2e-18}; }
+  std::vector<std::string> skipped() const override { return {}; }
+};
+
+TEST(Newton, SaysAtOnceThatContactAllowsNoStep) {
+  Chain chain;
+  chain.add_weight(2, Vector3d(9.81, 0, 0));
+  Matrix3Xd x = chain.X;
+  Newton newton;
+  NewtonOptions options;
+  options.dt = 0.1;
+  Blocked contact;
+  const NewtonResult result = newton.minimise(chain.system, x, options, &contact);
+  EXPECT_FALSE(result.converged);
+  EXPECT_EQ(result.iterations, 0);
+  EXPECT_EQ(result.worst_vertex, 2);
+  EXPECT_EQ(result.reason,
+            "contact allows no part of a Newton step of 5.89 m/s at vertex 2: the smallest gap is 2e-18 m, which "
+            "positions hardly resolve; move the scene nearer to the origin, or raise the stiffness of contact");
+  EXPECT_EQ(x, chain.X);
+}
+
 TEST(Newton, NamesThePotentialWhoseDomainTheStartIsOutsideOf) {
   Chain chain;
   chain.system.add(Potential::on_stencils("floor", body_kernels::ground_barrier(), {1}, chain.X,

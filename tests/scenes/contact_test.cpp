@@ -89,6 +89,34 @@ TEST(Contact, BlockOnASlopeStaysOrSlidesAsCoulombSays) {
   }
 }
 
+// What accelerates the block is its weight and the forces that the report tells; the slope bears the opposite.
+TEST(Contact, ForcesOfTheReportAccelerateTheBlock) {
+  const double dt = 0.01;
+  const std::string text = settings("[4.38717, 0, -8.77433]", dt, 30, "mu = 0.3\n") +
+                           block("block", "translate = [0, 0, 0.0006]\n") +
+                           "[[obstacle]]\nname = \"slope\"\nbox = { size = [2, 1, 0.1], cells = [4, 2, 1] }\ntranslate "
+                           "= [-0.5, -0.4, -0.1]\n"
+                           "[output]\nforces = true\n";
+  BuiltScene built = build_scene(read_scene_text(text, "a.toml"), shipped_energies(), real_kernels);
+  TimeStepper stepper(*built.system, built.mass, built.contacts.get(), built.step, built.script);
+  State state = built.start;
+  for (int step = 0; step < 30; ++step) {
+    const Eigen::Vector3d before = state.v * built.mass;
+    const StepRecord record = stepper.step(state);
+    ASSERT_TRUE(record.accepted) << record.reason;
+    ASSERT_TRUE(record.forces);
+    const Eigen::Vector3d normal = record.forces->normal.leftCols(27).rowwise().sum();
+    const Eigen::Vector3d friction = record.forces->friction.leftCols(27).rowwise().sum();
+    const Eigen::Vector3d weight = Eigen::Vector3d(4.38717, 0, -8.77433);  // N; 1 kg
+    const Eigen::Vector3d pushed = (state.v * built.mass - before) / dt;
+    EXPECT_LT((normal + friction + weight - pushed).norm(), 2e-2) << step;  // 1 kg solved to 5e-5 m/s
+    EXPECT_LT((record.forces->normal.rowwise().sum() + record.forces->friction.rowwise().sum()).norm(), 1e-9);
+    if (step < 20) continue;  // it slides steadily
+    EXPECT_NEAR(normal[2], 8.77433, 0.02 * 8.77433);
+    EXPECT_NEAR(friction[0], -0.3 * normal[2], 0.02 * normal[2]);
+  }
+}
+
 TEST(Contact, ObstacleOnAScriptCarriesWhatLiesOnIt) {
   const Outcome run =
       run_text(settings("[0, 0, -9.81]", 0.01, 50, "mu = 0.8\n") + block("block", "translate = [0, 0, 0.0006]\n") +
@@ -169,14 +197,54 @@ TEST(Contact, StartWithIntersectionsNamesThemAndCanBeLookedAt) {
   EXPECT_GT(faults.x.cols(), 4);
 }
 
-TEST(Contact, BarriersThatAreFiniteAtContactAreRefused) {
-  EXPECT_EQ(start_error(settings("[0, 0, 0]", 0.01, 1, "barrier = \"cubic_barrier\"\n") + block("one", "")),
-            "a.toml:6:11: contact: the barrier's force at a gap of 1e-09 dhat is 0.002 N per unit of its stiffness and "
-            "does not grow towards contact, so that it keeps nothing apart; use one that is infinite there, as "
-            "log_barrier");
-  EXPECT_EQ(run_text(settings("[0, 0, 0]", 0.01, 1, "barrier = \"squared_log_barrier\"\n") + block("one", ""))
-                .summary.failure,
-            "");
+TEST(Contact, FixedStiffnessOfABarrierThatIsFiniteAtContactIsRefused) {
+  EXPECT_EQ(
+      start_error(settings("[0, 0, 0]", 0.01, 1, "barrier = \"cubic_barrier\"\nstiffness = 1e6\n") + block("one", "")),
+      "a.toml:6:11: contact: the barrier's force at a gap of 1e-09 dhat is 0.002 N per unit of its stiffness and "
+      "does not grow towards contact, so that a fixed stiffness keeps nothing apart; leave 'stiffness' out, or "
+      "use a barrier that is infinite there, as log_barrier");
+}
+
+class ContactBarrier : public testing::TestWithParam<const char*> {
+ protected:
+  static std::string barrier() {
+    const std::string param = GetParam();
+    const std::string law = param.substr(0, param.find(' '));
+    return "barrier = \"" + law + "\"\n" + (law == param ? "" : "area_weights = true\n");
+  }
+};
+INSTANTIATE_TEST_SUITE_P(laws, ContactBarrier,
+                         testing::Values("log_barrier", "squared_log_barrier", "cubic_barrier", "log_barrier by area"),
+                         [](const auto& info) {
+                           std::string name = info.param;
+                           std::replace(name.begin(), name.end(), ' ', '_');
+                           return name;
+                         });
+
+TEST_P(ContactBarrier, KeepsBlocksThatMeetApart) {
+  const Outcome run = run_text(settings("[0, 0, 0]", 0.01, 30, barrier()) + block("left", "velocity = [3, 0, 0]\n") +
+                               block("right", "translate = [0.15, 0.03, 0.02]\nrotate = [0.1, 0.2, 0.3]\n"));
+  EXPECT_EQ(run.summary.failure, "");
+  EXPECT_EQ(run.summary.unconverged_steps, 0);
+  EXPECT_LT(run.summary.smallest_gap, 1e-3);  // they met
+  const Eigen::Vector3d momentum = run.end.v * run.built.mass;
+  EXPECT_LT((momentum - Eigen::Vector3d(3, 0, 0)).norm(), 3e-3);
+  EXPECT_GT(mean(run.end.v, 27, 27)[0], 1.2);
+}
+
+TEST_P(ContactBarrier, HoldsABlockUnderAWeight) {
+  const Outcome run = run_text(settings("[0, 0, -9.81]", 0.02, 30, barrier() + "mu = 0.5\n") +
+                               block("lower", "translate = [0, 0, 0.0008]\n") +
+                               block("upper", "translate = [0.01, 0.02, 0.1016]\nrotate = [0, 0, 0.1]\n") +
+                               "[[obstacle]]\nname = \"plate\"\nbox = { size = [0.3, 0.3, 0.02], cells = [2, 2, 1] }\n"
+                               "translate = [-0.1, -0.1, -0.02]\n");
+  EXPECT_EQ(run.summary.failure, "");
+  EXPECT_EQ(run.summary.unconverged_steps, 0);
+  EXPECT_GT(run.summary.smallest_gap, 0);
+  EXPECT_LT(run.summary.smallest_gap, 1e-3);
+  const double height = mean(run.end.x, 27, 27)[2];  // of the upper block's middle, less what both are squeezed by
+  EXPECT_LT(height, 0.1516);
+  EXPECT_GT(height, 0.135);
 }
 
 TEST(Contact, StartCloserThanOffsetsNamesTheVertices) {

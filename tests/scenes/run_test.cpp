@@ -100,6 +100,21 @@ TEST_F(run, writes_frames_at_the_interval_and_removes_those_of_an_earlier_run) {
   EXPECT_EQ(report().size(), 30u);
 }
 
+TEST_F(run, writes_forces_of_contact_when_asked) {
+  go(falling + "[output]\nforces = true\n");
+  const std::vector<json> records = report();
+  for (const char* part : {"contact", "friction"}) EXPECT_EQ(records.front()["forces"]["block"][part], json({0, 0, 0}));
+  EXPECT_GT(records.back()["forces"]["block"]["contact"][2], 0);
+  for (const char* frame : {"000000.vtu", "000030.vtu"}) {
+    std::ifstream in(folder / "falling_frames" / frame);
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    EXPECT_THAT(text, testing::HasSubstr("Name=\"contact_force\"")) << frame;
+    EXPECT_THAT(text, testing::HasSubstr("Name=\"friction_force\"")) << frame;
+  }
+  go(falling);
+  EXPECT_FALSE(report().back().contains("forces"));
+}
+
 TEST_F(run, ends_at_a_step_that_fails_with_the_last_good_state_written) {
   const RunSummary summary =
       go(falling + "[solver]\nmax_iterations = 1\ntolerance = 1e-12\n[output]\nframe_interval = 1\n");
