@@ -51,7 +51,7 @@ WorldLaws world_laws(const Scene& scene, Laws& laws, std::vector<std::string>& s
 std::vector<UsedLaw> object_laws(const SceneObject& object, Laws& laws) {
   std::vector<UsedLaw> out;
   for (const EnergyUse& use : object.energies) {
-    const Energy& energy = laws.get(use.law, use.at("law"));
+    const Energy& energy = laws.get(use);
     check_supported(energy, use);
     out.push_back({&energy, checked_params(energy, use)});
   }
@@ -65,7 +65,9 @@ std::vector<std::string> law_warnings(const Scene& scene, const std::vector<std:
   for (size_t i = 0; i < used.size(); ++i) {
     for (size_t j = 0; j < used[i].size(); ++j) {
       const Energy& energy = *used[i][j].energy;
-      if (!scene.objects[i].energies[j].law.ends_with(".energy") || !checked.insert(&energy).second) continue;
+      const EnergyUse& use = scene.objects[i].energies[j];
+      if (!use.wrote("text") && !use.law.ends_with(".energy")) continue;
+      if (!checked.insert(&energy).second) continue;
       for (const Finding& finding : check_energy(energy))
         if (finding.severity >= Severity::warning) out.push_back(to_string(finding));
     }

@@ -52,6 +52,23 @@ const Energy& Laws::get(const std::string& law, const Place& place) {
   return found->second;
 }
 
+const Energy& Laws::get(const EnergyUse& use) {
+  if (!use.wrote("text")) return get(use.law, use.at("law"));
+  const std::string key = to_string(use.at("text"));
+  auto found = read_.find(key);
+  if (found == read_.end()) {
+    const std::string lines_above(static_cast<size_t>(use.text_line - 1), '\n');
+    Energy energy = parse_energy(lines_above + use.text, use.place.file);
+    energy.text = use.text;
+    if (!energy.complete())
+      throw SourceError(
+          use.at("text"),
+          fmt::format("'{}' is a part of an energy of contact; an object carries whole energies", energy.name));
+    found = read_.emplace(key, std::move(energy)).first;
+  }
+  return found->second;
+}
+
 Parameters checked_params(const Energy& energy, const EnergyUse& use) {
   std::vector<std::string> names;
   for (const Symbol* param : energy.with_role(Role::param)) names.push_back(param->name);

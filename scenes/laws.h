@@ -19,11 +19,13 @@ class Laws {
 
   // Throws SourceError at `place` when there is no such law, and at the energy's own place when the file is wrong.
   const Energy& get(const std::string& law, const Place& place);
+  // The same of what an object names, or holds as text: then faults are at their line of the scene.
+  const Energy& get(const EnergyUse& use);
 
  private:
   const Catalogue* catalogue_;
   std::string scene_folder_;
-  std::map<std::string, Energy> read_;  // by the name or path that was written
+  std::map<std::string, Energy> read_;  // by the name or path that was written, or the place of the text
 };
 
 // The values of all params of the energy in SI. Throws SourceError at the scene's line for a param that is missing,

@@ -44,7 +44,9 @@ struct ParamValue {
 };
 
 struct EnergyUse : Located {
-  std::string law;  // a name in the catalogue, or a path ending in .energy relative to the scene file
+  std::string law;    // a name in the catalogue, or a path ending in .energy relative to the scene file; or "" and
+  std::string text;   // the energy itself, as an .energy file holds it
+  int text_line = 0;  // of the scene file, where the text begins
   std::map<std::string, ParamValue> params;
 };
 
