@@ -8,6 +8,7 @@
 
 #include "symbolic/declaration.h"
 #include "symbolic/functions.h"
+#include "symbolic/other_names.h"
 #include "symbolic/typing.h"
 
 namespace ergon {
@@ -112,7 +113,7 @@ class Analysis {
       throw SourceError(place, fmt::format("the value of an energy is a scalar, found {}", to_string(value.shape)));
     if (!value.any_unit && value.unit != value_unit(energy_))
       throw SourceError(
-          place, fmt::format("the value of a {} expects {}, found {}", what(), value_text(), to_string(value.unit)));
+          place, fmt::format("the value of {} expects {}, found {}", what(), value_text(), to_string(value.unit)));
   }
 
   // A distance gives `gap2`, `gap` or both, and may give a `weight` of the energy.
@@ -161,12 +162,18 @@ class Analysis {
     std::string message = fmt::format("unknown name '{}'", e.text);
     if (e.text == "F") throw SourceError(e.place, message + "; F is known in a density, a stencil energy has points");
     if (e.text == "T") throw SourceError(e.place, message + "; a transpose is written A'");
+    const std::string elsewhere = quantity_elsewhere(e.text, known.contains("F"));
+    if (!elsewhere.empty()) throw SourceError(e.place, message + elsewhere);
     std::vector<std::string> candidates;
     for (const auto& [name, quantity] : known) candidates.push_back(name);
     const std::string nearest = did_you_mean(e.text, candidates);
     const bool few = nearest.empty() && !candidates.empty() && candidates.size() <= 12;
     throw SourceError(e.place,
-                      message + nearest + (few ? fmt::format("; known here are {}", fmt::join(candidates, ", ")) : ""));
+                      message + nearest +
+                          (few ? fmt::format("; known here are {}; a quantity is declared by `param NAME UNIT`, a part "
+                                             "is named by `let`",
+                                             fmt::join(candidates, ", "))
+                               : ""));
   }
 
   void same_in_all_cases(const Let& let, const Quantity& q) {
@@ -195,8 +202,9 @@ class Analysis {
   }
 
   std::string what() const {
-    if (energy_.kind == Energy::Kind::barrier) return "barrier";
-    return energy_.geometry + (energy_.kind == Energy::Kind::density ? " density" : " energy");
+    if (energy_.kind == Energy::Kind::barrier) return "a barrier";
+    return (energy_.geometry.starts_with("e") ? "an " : "a ") + energy_.geometry +
+           (energy_.kind == Energy::Kind::density ? " density" : " energy");
   }
 
   const char* value_text() const {

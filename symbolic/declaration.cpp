@@ -39,6 +39,8 @@ class DeclarationReader {
     Range range;
     if (at_ < text_.size() && (text_[at_] == '(' || text_[at_] == '[')) range = this->range();
     const std::string help(text_.substr(at_));
+    if (!help.empty() && std::string_view("<>=").find(help[0]) != std::string_view::npos)
+      fail(at_, fmt::format("expected a range such as (0, inf), [0, 1] or (-1, 1/2), found '{}'", peek().text));
     for (Symbol& symbol : symbols) {
       symbol.unit = unit;
       symbol.range = range;

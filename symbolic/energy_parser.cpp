@@ -65,6 +65,8 @@ class EnergyParser {
     const Words words = split(statement);
     header_ = words.places[0];
     const auto found = std::find(headers.begin(), headers.end(), words.text[0]);
+    if (found == headers.end() && (words.text[0].starts_with("//") || words.text[0].starts_with("%")))
+      throw SourceError(words.places[0], fmt::format("found '{}'; comments begin with '#'", words.text[0]));
     if (found == headers.end())
       throw SourceError(words.places[0],
                         fmt::format("expected {} as the first statement, found '{}'", any_header, words.text[0]) +
@@ -98,6 +100,11 @@ class EnergyParser {
   void density_geometry(const Place& place) {
     static const std::vector<std::string> known = {"solid", "membrane", "line"};
     const std::optional<Shape> shape = shape_of_F(energy_.geometry);
+    if (!shape && points_of_stencil(energy_.geometry) > 0)
+      throw SourceError(place,
+                        fmt::format("'{0}' is a stencil of points; a density is over one of {1}, and an energy of "
+                                    "points begins with `energy {2} {0}`",
+                                    energy_.geometry, list(known), energy_.name));
     if (!shape)
       throw SourceError(
           place, fmt::format("unknown geometry '{}'; a density is over one of {}", energy_.geometry, list(known)) +
@@ -107,6 +114,11 @@ class EnergyParser {
 
   void stencil_geometry(const Place& place) {
     if (points_of_stencil(energy_.geometry) > 0) return;
+    if (shape_of_F(energy_.geometry))
+      throw SourceError(place,
+                        fmt::format("'{0}' is what a density is over, as in `density {1} {0}`; an energy of points "
+                                    "names a stencil: {2}",
+                                    energy_.geometry, energy_.name, list(stencil_names())));
     throw SourceError(place,
                       fmt::format("unknown stencil '{}'; known are {}", energy_.geometry, list(stencil_names())) +
                           did_you_mean(energy_.geometry, stencil_names()));
@@ -116,6 +128,11 @@ class EnergyParser {
     const size_t end = end_of_name(statement.text, 0);
     const std::string word = statement.text.substr(0, end);
     const Place place = statement.place();
+    const size_t next = statement.text.find_first_not_of(" \t", end);
+    const bool given = end > 0 && next < statement.text.size() && statement.text[next] == '=';
+    if (given && (word == "energy" || word == "density" || word == "psi" || word == "Psi" || word == "W"))
+      throw SourceError(place,
+                        fmt::format("unknown statement '{} = ...'; the energy is given by `value EXPRESSION`", word));
     if (std::find(headers.begin(), headers.end(), word) != headers.end())
       throw SourceError(place, fmt::format("a second header; a file holds one energy, and '{}' began in line {}",
                                            energy_.name, header_.line));
@@ -136,9 +153,8 @@ class EnergyParser {
     }
     const size_t blank = std::min(statement.text.find_first_of(" \t"), statement.text.size());
     std::string message = fmt::format("unknown statement '{}'", statement.text.substr(0, std::max(end, blank)));
-    const size_t sign = statement.text.find_first_not_of(" \t", end);
-    if (end > 0 && sign < statement.text.size() && statement.text[sign] == '=')
-      throw SourceError(place, message + fmt::format("; a name is given by `let {} = ...`", word));
+    if (given) throw SourceError(place, message + fmt::format("; a name is given by `let {} = ...`", word));
+    if (word == "return") throw SourceError(place, message + "; the energy is given by `value EXPRESSION`");
     throw SourceError(place,
                       message + fmt::format("; expected one of {}", list(keywords)) + did_you_mean(word, keywords));
   }

@@ -28,9 +28,12 @@ std::optional<Finding> check_moduli(const Energy& energy, const std::string& cas
 // Small strains of the undeformed state cost energy.
 std::optional<Finding> check_stable_at_rest(const Energy& energy, const std::string& case_name);
 
-// How far a solid may be stretched and pressed along one axis until a small strain gives energy away, between a
-// hundredth and a hundredfold of its length.
+// How far a solid may be stretched and pressed along one, two and three axes, and sheared, until a small strain gives
+// energy away: between a hundredth and a hundredfold of its length.
 std::optional<Finding> check_range(const Energy& energy, const std::string& case_name);
+
+// Whether the value of a density grows without bound as it collapses along an axis.
+std::optional<Finding> check_collapse(const Energy& energy, const std::string& case_name);
 
 // A solid is finite for det(F) < 0, or `require` keeps it away from there.
 std::optional<Finding> check_inversion(const Energy& energy, const std::string& case_name);

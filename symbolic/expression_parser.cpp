@@ -1,5 +1,7 @@
 #include "symbolic/expression_parser.h"
 
+#include "symbolic/other_names.h"
+
 namespace ergon {
 namespace {
 
@@ -53,7 +55,7 @@ void ExpressionParser::finish() {
   const Token& token = next();
   if (token.kind == Token::Kind::end) return;
   std::string message = "expected an operator or the end of the statement, found " + to_string(token);
-  if (token.kind != Token::Kind::sign) message += "; products are written with '*'";
+  message += token.kind != Token::Kind::sign ? "; products are written with '*'" : sign_elsewhere(token.text);
   if (token.is(")") || token.is("]")) message = "found " + to_string(token) + " without its opening bracket";
   if (token.is("=")) message += "; names are given by `let`";
   if (token.is("<") || token.is(">")) message += "; comparisons belong to `active` and `require`";

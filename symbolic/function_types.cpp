@@ -6,6 +6,7 @@
 
 #include "symbolic/constant.h"
 #include "symbolic/functions.h"
+#include "symbolic/other_names.h"
 
 namespace ergon {
 namespace {
@@ -55,7 +56,9 @@ class Call {
       for (size_t i = 1; i < 4; ++i) same_unit(0, i);
       return {};
     }
-    throw SourceError(call_.place, fmt::format("unknown function '{}'", f) + did_you_mean(f, function_names()));
+    const std::string elsewhere = function_elsewhere(f);
+    throw SourceError(call_.place, fmt::format("unknown function '{}'", f) +
+                                       (elsewhere.empty() ? did_you_mean(f, function_names()) : elsewhere));
   }
 
  private:
@@ -171,9 +174,10 @@ Quantity type_of_call(const Expression& call, const std::vector<Quantity>& argum
 
 Quantity power(const Expression& at, const Quantity& base, const Quantity& exponent, const Expression& exponent_text) {
   if (!base.shape.scalar())
-    throw SourceError(at.place,
-                      fmt::format("a power expects a scalar base, found {}", to_string(base.shape)) +
-                          (base.shape.rows == base.shape.cols ? "; products of matrices are written A*A" : ""));
+    throw SourceError(at.place, fmt::format("a power expects a scalar base, found {}", to_string(base.shape)) +
+                                    (base.shape.rows == base.shape.cols ? "; products of matrices are written A*A"
+                                     : base.shape.cols == 1             ? "; the square of a length is norm2(a)"
+                                                                        : ""));
   if (!exponent.shape.scalar())
     throw SourceError(start_of(exponent_text),
                       fmt::format("a power expects a scalar exponent, found {}", to_string(exponent.shape)));

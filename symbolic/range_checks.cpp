@@ -18,10 +18,12 @@ namespace {
 
 constexpr double least = 0.01, most = 100;
 
-// The smallest eigenvalue of the stiffness against small symmetric strains at F = diag(stretch, 1, 1).
-double weakest_stiffness(const Energy& energy, const std::string& case_name, ExactInputs inputs, double stretch) {
+// The smallest eigenvalue of the stiffness against small symmetric strains where these components of F (column by
+// column) have this value and all others are those of the undeformed state.
+double weakest_stiffness(const Energy& energy, const std::string& case_name, ExactInputs inputs,
+                         const std::vector<size_t>& components, double value) {
   inputs.at("F") = undeformed({3, 3});
-  inputs.at("F")[0] = cln::rational(cln::cl_DF(stretch));
+  for (const size_t component : components) inputs.at("F")[component] = cln::rational(cln::cl_DF(value));
   DoubleAlgebra numbers(inputs);
   JetAlgebra<DoubleAlgebra> jets(energy, numbers);
   const Jet<double> jet = elaborate(energy, case_name, jets).value;
@@ -50,25 +52,34 @@ std::optional<Finding> check_range(const Energy& energy, const std::string& case
     inputs.at(name) = {value};
     params += fmt::format("{}{} = {}", params.empty() ? "" : ", ", name, cln::double_approx(value));
   }
-  auto stiff = [&](double stretch) { return weakest_stiffness(energy, case_name, inputs, stretch) > 0; };
-  if (!stiff(1)) return std::nullopt;  // other checks tell
-  auto end = [&](double factor) {
-    double inside = 1;
-    while (inside * factor > least && inside * factor < most && stiff(inside * factor)) inside *= factor;
+  auto stiff = [&](const std::vector<size_t>& components, double value) {
+    return weakest_stiffness(energy, case_name, inputs, components, value) > 0;
+  };
+  if (!stiff({}, 1)) return std::nullopt;  // other checks tell
+  auto end = [&](const std::vector<size_t>& components, double first, double factor) {
+    double inside = first;
+    if (!stiff(components, inside)) return 0.0;
+    while (inside * factor > least && inside * factor < most && stiff(components, inside * factor)) inside *= factor;
     double outside = inside * factor;
     if (!(outside > least && outside < most)) return factor < 1 ? least : most;
     for (int i = 0; i < 40; ++i) {
       const double middle = (inside + outside) / 2;
-      (stiff(middle) ? inside : outside) = middle;
+      (stiff(components, middle) ? inside : outside) = middle;
     }
     return inside;
   };
-  return Finding{Severity::ok,
-                 "stiffness",
-                 fmt::format("every small strain costs energy from {:.3g} to {:.3g} times the length along one axis{}",
-                             end(0.97), end(1 / 0.97), params.empty() ? "" : fmt::format(" ({})", params)),
-                 {},
-                 ""};
+  auto both = [&](const std::vector<size_t>& axes) {
+    return fmt::format("{:.3g} to {:.3g}", end(axes, 1, 0.97), end(axes, 1, 1 / 0.97));
+  };
+  return Finding{
+      Severity::ok,
+      "stiffness",
+      fmt::format("every small strain costs energy from {} times the length along one axis, {} along two, {} "
+                  "along three, and up to a shear of {:.3g}{}",
+                  both({0}), both({0, 4}), both({0, 4, 8}), end({3}, least, 1 / 0.97),
+                  params.empty() ? "" : fmt::format(" ({})", params)),
+      {},
+      ""};
 }
 
 }  // namespace ergon

@@ -2,6 +2,8 @@
 
 #include <string_view>
 
+#include "symbolic/other_names.h"
+
 namespace ergon {
 namespace {
 
@@ -95,7 +97,8 @@ std::vector<Token> tokenise(const Statement& statement, size_t offset) {
     } else if (c == '.') {
       throw SourceError(place, "expected digits on both sides of the decimal point");
     } else if (std::string_view("+-*/^'()[],;=<>").find(c) == std::string_view::npos) {
-      throw SourceError(place, "found '" + character(text, at) + "', which has no meaning in an expression");
+      const std::string found = character(text, at);
+      throw SourceError(place, "found '" + found + "', which has no meaning in an expression" + sign_elsewhere(found));
     }
     tokens.push_back({kind, std::string(text.substr(at, end - at)), place});
     at = end;

@@ -212,9 +212,12 @@ TEST(Parser, ColumnsCountCharacters) {
   };
   const std::string head = "energy e point\ndof x m\nparam k N/m (0, inf) ";
   EXPECT_EQ(message(head + "Steifigkeit in \xC3\xA4\xC3\xB6\xC3\xBC\nvalue k*norm2(y)\n"),
-            "e.energy:4:15: unknown name 'y'; known here are k, x");
-  EXPECT_EQ(message(head + "\nvalue \xC3\xA4 + k*norm2(y)\n"),
-            "e.energy:4:7: found '\xC3\xA4', which has no meaning in an expression");
+            "e.energy:4:15: unknown name 'y'; known here are k, x; a quantity is declared by `param NAME UNIT`, a part "
+            "is named by `let`");
+  EXPECT_EQ(
+      message(head + "\nvalue \xC3\xA4 + k*norm2(y)\n"),
+      "e.energy:4:7: found '\xC3\xA4', which has no meaning in an expression; names are written in the letters a to z, "
+      "digits and '_'");
   EXPECT_EQ(message(head + "\nparam m\xC3\xBC 1\nvalue k*norm2(x)\n"),
             "e.energy:4:8: expected a blank after the name 'm', found '\xC3\xBC'");
   // Behind characters of two and three bytes in the same statement.
