@@ -1,0 +1,46 @@
+// The programs in tools/examples do what they say.
+
+#include <gmock/gmock.h>
+
+#include "tests/tools/command.h"
+
+namespace ergon {
+namespace {
+
+using testing::HasSubstr;
+
+class Examples : public CommandTest {
+ protected:
+  Answer example(const std::string& command) { return shell(ERGON_BINARY_DIR "/examples/" + command); }
+};
+class SlowExamples : public Examples {};
+
+TEST_F(Examples, AFamilyOfLawsIsMadeCompiledAndEvaluated) {
+  const Answer answer = example("hello_energy");
+  EXPECT_EQ(answer.code, 0) << answer.out << answer.err;
+  EXPECT_THAT(answer.out, testing::StartsWith("energy "));
+}
+
+TEST_F(Examples, ASolverOfOnesOwnConverges) {
+  const Answer answer = example("own_solver_loop");
+  EXPECT_EQ(answer.code, 0) << answer.out << answer.err;
+  EXPECT_THAT(answer.out, HasSubstr("the free end hangs 0."));
+}
+
+TEST_F(SlowExamples, ASurfaceIsLaidOutFlat) {
+  const Answer answer = example("surface_parametrisation '" ERGON_SOURCE_DIR "/scenes/meshes/bunny.obj' flat.obj");
+  EXPECT_EQ(answer.code, 0) << answer.out << answer.err;
+  EXPECT_THAT(answer.out, HasSubstr("no triangle turned over: true"));
+  // The distortion of every isometric layout is 0; that of a closed surface cut once stays below a few times its area.
+  double before = 0, after = 0;
+  ASSERT_EQ(std::sscanf(answer.out.c_str(), "%*d triangles laid out in %*d iterations: energy per area %lf -> %lf",
+                        &before, &after),
+            2);
+  EXPECT_LT(after, 0.5 * before);
+  EXPECT_GT(after, 0);
+  EXPECT_THAT(read("flat.obj"), HasSubstr("\nf "));
+  EXPECT_EQ(example("surface_parametrisation").code, 1);
+}
+
+}  // namespace
+}  // namespace ergon
