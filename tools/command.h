@@ -16,8 +16,11 @@ enum ExitCode { exit_done = 0, exit_failed = 1, exit_bad_input = 2 };
 using Run = std::function<int(std::ostream& out)>;
 
 void add_run_command(CLI::App& app, Run& run);
+void add_new_command(CLI::App& app, Run& run);
 void add_check_command(CLI::App& app, Run& run);
 void add_show_command(CLI::App& app, Run& run);
+void add_plot_command(CLI::App& app, Run& run);
+void add_fit_command(CLI::App& app, Run& run);
 void add_cost_command(CLI::App& app, Run& run);
 void add_eval_command(CLI::App& app, Run& run);
 void add_batch_command(CLI::App& app, Run& run);

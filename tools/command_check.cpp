@@ -4,12 +4,16 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <ostream>
 
+#include "scenes/catalogue.h"
 #include "symbolic/checks.h"
 #include "tools/command.h"
 #include "tools/installation.h"
+#include "tools/kernel_findings.h"
 #include "tools/rows.h"
 
 namespace ergon {
@@ -24,19 +28,51 @@ std::string title_of(const Energy& energy) {
 // Of a part, what is found in the energies that it is composed to, under their names.
 std::vector<Finding> findings_of(const Energy& energy) {
   std::vector<Finding> all;
-  for (const Energy& whole : complete(energy))
-    for (Finding& finding : check_energy(whole)) {
+  for (const Energy& whole : complete(energy)) {
+    std::vector<Finding> findings = check_energy(whole);
+    for (Finding& finding : kernel_findings(whole)) findings.push_back(std::move(finding));
+    for (Finding& finding : findings) {
       if (!energy.complete()) finding.message = whole.name + ": " + finding.message;
       all.push_back(std::move(finding));
     }
+  }
   return all;
+}
+
+// A file is found by its own name, an energy of the catalogue by its: what else the header says leads astray.
+std::optional<Finding> name_finding(const Energy& energy) {
+  namespace fs = std::filesystem;
+  const fs::path file = energy.file;
+  if (file.stem() != energy.name)
+    return Finding{
+        Severity::warning,
+        "name",
+        fmt::format("the file {} holds an energy named '{}'; name both alike", file.filename().string(), energy.name),
+        {energy.file, 0, 0},
+        ""};
+  std::error_code error;
+  try {
+    const std::string shipped = Catalogue(Catalogue::default_folders()).file_of(energy.name, "", {});
+    if (fs::equivalent(shipped, file, error)) return std::nullopt;
+    return Finding{
+        Severity::warning,
+        "name",
+        fmt::format("the catalogue has '{}' too ({}), and finds that one where a scene names no file; choose "
+                    "another name",
+                    energy.name, shipped),
+        {energy.file, 0, 0},
+        ""};
+  } catch (const SourceError&) {
+    return std::nullopt;
+  }
 }
 
 std::string plural(int count, const char* what) { return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s"); }
 
 int check(const std::string& name, bool json, std::ostream& out) {
   const Energy energy = find_energy_or_part(name);
-  const std::vector<Finding> findings = findings_of(energy);
+  std::vector<Finding> findings = findings_of(energy);
+  if (auto clash = name_finding(energy)) findings.insert(findings.begin(), std::move(*clash));
   std::array<int, 4> counts{};
   size_t width = 0;
   for (const Finding& finding : findings) {

@@ -70,8 +70,11 @@ int run_command_line(std::vector<std::string> arguments, std::ostream& out, std:
   Run run;
   add_run_command(app, run);
   add_batch_command(app, run);
+  add_new_command(app, run);
   add_check_command(app, run);
   add_show_command(app, run);
+  add_plot_command(app, run);
+  add_fit_command(app, run);
   add_compile_command(app, run);
   add_cost_command(app, run);
   add_eval_command(app, run);

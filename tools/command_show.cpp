@@ -3,13 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <ostream>
 
+#include "runtime/error.h"
 #include "runtime/lanes/lanes.h"
+#include "scenes/catalogue.h"
 #include "symbolic/analyse.h"
 #include "symbolic/print.h"
+#include "tools/catalogue_page.h"
 #include "tools/command.h"
+#include "tools/files.h"
 #include "tools/installation.h"
 
 namespace ergon {
@@ -17,7 +22,8 @@ namespace {
 
 struct Options {
   std::string energy, case_name;
-  bool latex = false, source = false;
+  std::string html;
+  bool latex = false, source = false, kernel = false, all = false;
 };
 
 // What the structure pass found.
@@ -61,8 +67,43 @@ std::string title_of(const Energy& energy) {
                      energy.geometry, to_string(value_unit(energy)));
 }
 
+// The energy that was asked for, all energies below a folder, or the whole catalogue.
+std::vector<Energy> energies_of(const Options& options) {
+  namespace fs = std::filesystem;
+  std::vector<std::string> names, folders;
+  if (options.all)
+    folders = Catalogue::default_folders();
+  else if (fs::is_directory(options.energy))
+    folders = {options.energy};
+  else
+    names = {options.energy};
+  for (const std::string& folder : folders)
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
+      if (entry.path().extension() == ".energy") names.push_back(entry.path().string());
+  if (names.empty()) throw InputError(fmt::format("{}: holds no .energy file", options.energy));
+  std::sort(names.begin(), names.end());
+  std::vector<Energy> energies;
+  for (const std::string& name : names) energies.push_back(find_energy_or_part(name));
+  return energies;
+}
+
+int show_page(const Options& options, std::ostream& out) {
+  const std::vector<Energy> energies = energies_of(options);
+  write_text_file(options.html, catalogue_page(energies));
+  out << fmt::format("{}: {} {}\n", options.html, energies.size(), energies.size() == 1 ? "energy" : "energies");
+  return exit_done;
+}
+
 int show(const Options& options, std::ostream& out) {
-  const Energy energy = options.source ? find_energy(options.energy) : find_energy_or_part(options.energy);
+  if (options.all != options.energy.empty())
+    throw InputError("'ergon show' needs an energy, or --all for the whole catalogue");
+  if (!options.html.empty()) return show_page(options, out);
+  if (options.all) {
+    for (const Energy& energy : energies_of(options)) out << title_of(energy) << '\n';
+    return exit_done;
+  }
+  const Energy energy =
+      options.source || options.kernel ? find_energy(options.energy) : find_energy_or_part(options.energy);
   const std::vector<std::string> cases = cases_of(energy, options.case_name);
   if (options.source) {
     for (const std::string& name : cases) out << generate(energy, compile_options(name, lanes::best_lanes())).source;
@@ -70,6 +111,11 @@ int show(const Options& options, std::ostream& out) {
   }
   if (options.latex) {
     out << formula_latex(energy);
+    return exit_done;
+  }
+  if (options.kernel) {
+    for (const std::string& name : cases)
+      out << functions_of(generate(energy, compile_options(name, lanes::best_lanes())).source);
     return exit_done;
   }
   out << title_of(energy) << '\n';
@@ -86,9 +132,14 @@ int show(const Options& options, std::ostream& out) {
 void add_show_command(CLI::App& app, Run& run) {
   CLI::App* command = app.add_subcommand("show", "Prints an energy's formula, symbols, units, cost and emitted kernel");
   auto options = std::make_shared<Options>();
-  command->add_option("energy", options->energy, "an .energy file, or a name in the catalogue")->required();
+  command->add_option("energy", options->energy,
+                      "an .energy file, or a name in the catalogue; for --html also a folder");
+  command->add_flag("--all", options->all, "every file of the catalogue: a line each, or as --html says");
+  command->add_option("--html", options->html,
+                      "write a page instead: formula, curve, params, source, cost and checks of each energy");
   command->add_option("--case", options->case_name, "this case only");
   command->add_flag("--latex", options->latex, "the formula in LaTeX");
+  command->add_flag("--kernel", options->kernel, "only the functions that are emitted for it");
   command->add_flag("--source", options->source, "only the C++ that is emitted for it, as a whole file");
   command->callback([options, &run] { run = [options](std::ostream& out) { return show(*options, out); }; });
 }

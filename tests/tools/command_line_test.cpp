@@ -28,7 +28,8 @@ TEST_F(CommandLine, TellsItsVersionAndHelps) {
   EXPECT_THAT(version.out, MatchesRegex("ergon [0-9]+\\.[0-9]+\\.[0-9]+\n"));
   const Answer help = ergon("--help");
   EXPECT_EQ(help.code, 0);
-  for (const char* command : {"run", "check", "show", "compile", "cost", "eval", "bench"}) {
+  for (const char* command :
+       {"run", "batch", "new", "check", "show", "plot", "fit", "compile", "cost", "eval", "bench"}) {
     EXPECT_THAT(help.out, HasSubstr(std::string("\n  ") + command));
     const Answer one = ergon(std::string(command) + " --help");
     EXPECT_EQ(one.code, 0) << command;
@@ -37,7 +38,8 @@ TEST_F(CommandLine, TellsItsVersionAndHelps) {
 }
 
 TEST_F(CommandLine, NamesWhatWasMisspelt) {
-  expect("", 2, "'ergon' needs a command: run, check, show, compile, cost, eval, bench, accuracy");
+  expect("", 2,
+         "'ergon' needs a command: run, batch, new, check, show, plot, fit, compile, cost, eval, bench, accuracy");
   expect("chek x", 2, "unknown command 'ergon chek'; did you mean 'check'?");
   expect("bench kernel", 2, "unknown command 'ergon bench kernel'; did you mean 'kernels'?");
   expect("bench", 2, "'ergon bench' needs a command: kernels, compile, contact, ccd, scene");

@@ -57,6 +57,17 @@ TEST_F(Docs, EnergiesInTheLanguageReferenceAreSound) {
   }
 }
 
+TEST_F(SlowDocs, TheStepsOfAuthoringWork) {
+  const std::vector<std::string> scripts = blocks(file_text("docs/language.md"), "sh");
+  ASSERT_EQ(scripts.size(), 1u);
+  std::filesystem::create_symlink(ERGON_SOURCE_DIR "/tests", folder / "tests");
+  const Answer answer = shell("set -e; PATH=" ERGON_BINARY_DIR ":$PATH\n" + scripts[0]);
+  EXPECT_EQ(answer.code, 0) << answer.out << answer.err;
+  for (const char* made : {"my_rubber.energy", "my_rubber.svg", "my_fit.svg", "my_bending.svg", "my_bending.csv",
+                           "out/my_scene/my_scene.pvd"})
+    EXPECT_TRUE(std::filesystem::exists(folder / made)) << made;
+}
+
 TEST_F(Docs, TheLanguageReferenceNamesEveryFunctionAndStencil) {
   const std::string text = file_text("docs/language.md");
   for (const std::string& name : function_names()) EXPECT_TRUE(has_word(text, name)) << name;

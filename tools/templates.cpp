@@ -1,0 +1,141 @@
+#include "tools/templates.h"
+
+namespace ergon {
+
+const std::vector<EnergyTemplate>& energy_templates() {
+  static const std::vector<EnergyTemplate> all = {
+      {"solid", "density over F, 3x3",
+       R"(# Rubber that resists changes of shape and of volume. (This line is the summary: say what the law is for.)
+density  NAME   solid
+# Add where it comes from:  cite  Author Year. Title. Journal. Equation.
+# F is the deformation gradient; the value is in J per rest volume, that is Pa.
+param    mu   Pa   (0, inf)     shear modulus        # a name, its unit, its range, help
+param    K    Pa   (0, inf)     bulk modulus
+let      J = det(F)                                  # volume over volume at rest
+let      I = norm2(F)*J^(-2/3) - 3                   # change of shape: 0 at rest, 1 is much
+require  J > 0                                       # steps that would invert an element are shortened
+value    mu/2*I + K/2*(J - 1)^2
+)"},
+      {"membrane", "density over F, 3x2",
+       R"(# Cloth that is as stiff in all directions. (This line is the summary: say what the law is for.)
+density  NAME   membrane
+# F takes directions of the flat rest shape to space; the value is in J per rest area, that is N/m.
+param    mu   N/m   (0, inf)    shear modulus, times thickness       # a name, its unit, its range, help
+param    la   N/m   [0, inf)    first parameter of Lame, times thickness
+let      strain = (F'*F - identity(2))/2             # Green's strain: 0 at rest and under rotation
+value    mu*norm2(strain) + la/2*tr(strain)^2
+)"},
+      {"line", "density over F, 3x1",
+       R"(# Thread that resists stretching and can never be pressed to a point. (This line is the summary.)
+density  NAME   line
+# F is the derivative of the position by the length at rest; the value is in J per rest length, that is N.
+param    EA   N    (0, inf)     Young's modulus times the area of the cross-section    # a name, unit, range, help
+let      stretch2 = norm2(F)                         # square of the stretch
+require  stretch2 > 0
+value    EA/8*log(stretch2)^2
+)"},
+      {"point", "energy of one point",
+       R"(# Pulls every point towards a place, in proportion to its distance. (This line is the summary.)
+energy   NAME   point
+frame    fixed                                       # the place stays where it is: no invariance under rotation
+dof      x           m                               # the position, a vector of 3
+param    k           N/m  (0, inf)    stiffness      # a name, its unit, its range, help
+param    place[3]    m                where to
+value    k/2*norm2(x - place)
+)"},
+      {"edge", "energy of two points, as a spring",
+       R"(# Spring that stiffens as it is stretched. (This line is the summary: say what the law is for.)
+energy   NAME   edge
+dof      x0 x1        m                              # the points, vectors of 3
+rest     X0[3] X1[3]  m                rest positions    # named like a dof with a capital: filled in by the program
+param    k            N/m   (0, inf)   stiffness at rest # a name, its unit, its range, help
+let      L2 = norm2(X1 - X0)
+require  L2 > 0
+let      strain = (norm2(x1 - x0)/L2 - 1)/2          # Green's strain: 0 at the rest length
+value    k*L2/2*strain^2
+)"},
+      {"triangle", "energy of three points",
+       R"(# Keeps the area of a triangle. (This line is the summary: say what the law is for.)
+energy   NAME   triangle
+dof      x0 x1 x2            m                       # the points, vectors of 3
+rest     X0[3] X1[3] X2[3]   m                 rest positions    # named like a dof with a capital: filled in
+param    k                   N/m   (0, inf)    stiffness         # a name, its unit, its range, help
+let      A2 = norm2(cross(X1 - X0, X2 - X0))/4       # square of the area at rest
+let      a2 = norm2(cross(x1 - x0, x2 - x0))/4       # square of the area: no root, so smooth everywhere
+require  A2 > 0
+value    k/8*sqrt(A2)*(a2/A2 - 1)^2
+)"},
+      {"tetrahedron", "energy of four points",
+       R"(# Keeps the volume of a tetrahedron. (This line is the summary: say what the law is for.)
+energy   NAME   tetrahedron
+dof      x0 x1 x2 x3   m                             # the points, vectors of 3
+rest     V             m^3  (0, inf)   volume at rest
+param    K             Pa   (0, inf)   bulk modulus  # a name, its unit, its range, help
+let      J = det(columns(x1 - x0, x2 - x0, x3 - x0))/(6*V)
+value    K*V/2*(J - 1)^2
+)"},
+      {"hinge", "energy of two triangles that share an edge",
+       R"(# Bending: resists the change of the angle between two triangles. (This line is the summary.)
+energy   NAME   hinge
+# x0 and x1 are the ends of the shared edge, x2 and x3 the other corners of the two triangles.
+dof      x0 x1 x2 x3               m                 # the points, vectors of 3
+rest     X0[3] X1[3] X2[3] X3[3]   m               rest positions     # named like a dof with a capital: filled in
+param    k                         J    (0, inf)   bending stiffness  # a name, its unit, its range, help
+let      E = X1 - X0
+let      area = (norm(cross(E, X2 - X0)) + norm(cross(E, X3 - X0)))/2    # of both triangles at rest
+require  norm2(cross(E, X2 - X0)) > 0
+require  norm2(cross(E, X3 - X0)) > 0
+let      bend = dihedral(x0, x1, x2, x3) - dihedral(X0, X1, X2, X3)      # in radians
+value    3*k*norm2(E)/area*bend^2
+)"},
+      {"point_point", "energy of two points that are not joined by an edge",
+       R"(# Holds two points together. (This line is the summary: say what the law is for.)
+energy   NAME   point_point
+dof      p q   m                                     # the points, vectors of 3
+param    k     N/m   (0, inf)   stiffness            # a name, its unit, its range, help
+value    k/2*norm2(p - q)
+)"},
+      {"point_edge", "energy of a point and an edge",
+       R"(# Holds a point to a place on an edge. (This line is the summary: say what the law is for.)
+energy   NAME   point_edge
+dof      p e0 e1   m                                 # the point and the ends of the edge, vectors of 3
+rest     w         1     [0, 1]     where on the edge: 0 at e0, 1 at e1    # one value for each stencil
+param    k         N/m   (0, inf)   stiffness                              # one value for all
+value    k/2*norm2(p - (1 - w)*e0 - w*e1)
+)"},
+      {"point_triangle", "energy of a point and a triangle",
+       R"(# Holds a point to a place on a triangle. (This line is the summary: say what the law is for.)
+energy   NAME   point_triangle
+dof      p t0 t1 t2   m                              # the point and the corners of the triangle, vectors of 3
+rest     w1 w2        1    [0, 1]    weights of t1 and t2 in the place; that of t0 is what is left of 1
+param    k            N/m  (0, inf)  stiffness       # one value for all; `rest` has one for each stencil
+value    k/2*norm2(p - (1 - w1 - w2)*t0 - w1*t1 - w2*t2)
+)"},
+      {"edge_edge", "energy of two edges",
+       R"(# Holds two threads together where they cross. (This line is the summary: say what the law is for.)
+energy   NAME   edge_edge
+dof      a0 a1 b0 b1   m                             # the ends of both edges, vectors of 3
+rest     u v           1     [0, 1]     where on each edge: 0 at its first end, 1 at its second
+param    k             N/m   (0, inf)   stiffness    # one value for all; `rest` has one for each stencil
+value    k/2*norm2((1 - u)*a0 + u*a1 - (1 - v)*b0 - v*b1)
+)"},
+      {"barrier", "law of contact over a gap",
+       R"(# Keeps a gap open: zero beyond dhat, infinite at contact. (This line is the summary.)
+barrier  NAME
+# `gap` (m) and `gap2` (its square) are known; the program puts a distance, as that of a point and a triangle, in.
+param    dhat    m     (0, inf)    activation distance
+lag      kappa   N/m   (0, inf)    stiffness, which a scene renews between solves
+active   gap < dhat
+value    kappa*(dhat - gap)^3/gap                    # value, force and stiffness all begin at 0
+)"},
+      {"distance", "gap of two points, under any law of contact",
+       R"(# The distance of two points. (This line is the summary: say what the gap is between.)
+distance NAME   point_point
+dof      p q   m                                     # the points of the stencil, vectors of 3
+let      gap2 = norm2(p - q)                         # `gap2` (m^2), `gap` (m) or both; no `value`
+)"},
+  };
+  return all;
+}
+
+}  // namespace ergon
