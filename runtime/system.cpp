@@ -38,8 +38,9 @@ System::System(int vertices) : impl(std::make_shared<Impl>()) {
 }
 
 int System::vertices() const { return impl->vertices; }
-int System::free_vertices() const { return impl->free_vertices; }
-int System::block_of(int vertex) const { return impl->block_of[static_cast<size_t>(vertex)]; }
+int System::free_vertices() const { return impl->numbers.free; }
+int System::block_of(int vertex) const { return impl->numbers.block_of[static_cast<size_t>(vertex)]; }
+bool System::moves(int vertex) const { return impl->numbers.number[static_cast<size_t>(vertex)] >= 0; }
 Potential& System::potential(int index) { return impl->terms[impl->first_terms[static_cast<size_t>(index)]].potential; }
 int System::potential_count() const { return static_cast<int>(impl->first_terms.size()); }
 
@@ -47,12 +48,8 @@ void System::set_fixed(const std::vector<char>& fixed) {
   if (fixed.size() != static_cast<size_t>(impl->vertices)) {
     throw std::invalid_argument("set_fixed: one entry per vertex is needed");
   }
-  impl->block_of.resize(fixed.size());
-  impl->free_vertices = 0;
-  for (size_t v = 0; v < fixed.size(); ++v) impl->block_of[v] = fixed[v] != 0 ? -1 : impl->free_vertices++;
-  ++impl->fixed_version;
-  impl->pattern = nullptr;
-  impl->base_known = false;
+  impl->fixed = fixed;
+  impl->number_vertices();
 }
 
 int System::add(Potential potential) {
@@ -82,7 +79,7 @@ void System::Impl::prepare(bool coloured) {
   for (SystemTerm& term : terms) {
     term.data().prepare();
     term.check(vertices);
-    if (coloured) term.colour(rooms, taken);
+    if (coloured) term.colour(rooms, taken, numbers.lead);
     term.stencils = term.data().view();
     term.stencils.slots = term.slots.data();
     term.stencils.turned = term.turned.data();
@@ -215,6 +212,7 @@ void System::Impl::sum_gradients(const Eigen::Matrix3Xd& x, Eigen::Matrix3Xd& su
       for (int c = 0; c < 3; ++c) sum(c, v) = gradient[4 * static_cast<size_t>(v) + static_cast<size_t>(c)];
     }
   }
+  numbers.carriers.collect(sum);
 }
 
 Evaluation System::hessian(const Eigen::Matrix3Xd& x, Projection projection, Eigen::Matrix3Xd& gradient,
@@ -229,20 +227,18 @@ Evaluation System::hessian(const Eigen::Matrix3Xd& x, Projection projection, Eig
   gradient.resize(3, d.vertices);
 #pragma omp parallel if (d.worth_threads())
   {
-    const lanes::Workspace room = d.rooms[static_cast<size_t>(omp_get_thread_num())].view();
+    SystemRoom& room = d.rooms[static_cast<size_t>(omp_get_thread_num())];
 #pragma omp for schedule(static) nowait
     for (size_t i = 0; i < d.gradient.size(); ++i) d.gradient[i] = 0;
     d.start_matrix(matrix);
     for (SystemTerm& term : d.terms) {
       over_colours(term, [&](int chunk) {
-        const lanes::BlockRange range = term.range(chunk);
         lanes::ChunkResult* result = &term.results[static_cast<size_t>(chunk)];
         if (term.assembled()) {
-          term.operations->hessian(term.stencils, range, term.blocks(chunk), d.points_of(term),
-                                   static_cast<int>(projection), room,
-                                   term.gives_gradient ? d.gradient.data() : nullptr, matrix.values().data(), result);
+          d.add_chunk(term, chunk, projection, room, term.gives_gradient ? d.gradient.data() : nullptr,
+                      matrix.values().data(), result);
         } else if (term.gives_gradient) {
-          term.operations->gradient(term.stencils, range, d.points_of(term), d.gradient.data(), result);
+          term.operations->gradient(term.stencils, term.range(chunk), d.points_of(term), d.gradient.data(), result);
         }
       });
     }
@@ -251,6 +247,7 @@ Evaluation System::hessian(const Eigen::Matrix3Xd& x, Projection projection, Eig
       for (int c = 0; c < 3; ++c) gradient(c, v) = d.gradient[4 * static_cast<size_t>(v) + static_cast<size_t>(c)];
     }
   }
+  d.numbers.carriers.collect(gradient);
   Evaluation evaluation = d.sum(false, true);
   for (const SystemTerm& term : d.terms) {
     if (term.constant()) evaluation.indefinite += term.indefinite;

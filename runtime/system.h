@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "runtime/block_matrix.h"
+#include "runtime/carriers.h"
 #include "runtime/potential.h"
 #include "runtime/potential_values.h"
 
@@ -30,21 +31,32 @@ class System {
   int vertices() const;
   // Fixed vertices carry no degree of freedom: their rows and columns are left out of the matrix.
   void set_fixed(const std::vector<char>& fixed);
+  // Carried vertices have no degrees of freedom of their own either: what potentials give of derivatives with respect
+  // to them goes to the control points that carry them. Potentials need not know. Throws InputError for a control point
+  // that is fixed or carried itself, and for a vertex that is fixed and carried or carried twice.
+  void set_carriers(Carriers carriers);
+  const Carriers& carriers() const;
   int free_vertices() const;
-  int block_of(int vertex) const;  // block row of a vertex, -1 when fixed
+  int block_of(int vertex) const;  // block row of a vertex, -1 when it is fixed or carried
+  bool moves(int vertex) const;    // it is not fixed
 
   int add(Potential potential);  // its index in by_potential
   Potential& potential(int index);
   int potential_count() const;
 
   Evaluation value(const Eigen::Matrix3Xd& x);
-  // gradient: 3 x vertices, N; columns of fixed vertices hold the reaction (the full gradient)
+  // gradient: 3 x vertices, N; columns of fixed vertices hold the reaction (the full gradient), those of carried ones
+  // what is collected at their control points
   Evaluation gradient(const Eigen::Matrix3Xd& x, Eigen::Matrix3Xd& gradient);
   // The part of the gradient that comes from some potentials; indices, each once.
   void gradient_of(const std::vector<int>& potentials, const Eigen::Matrix3Xd& x, Eigen::Matrix3Xd& gradient);
   // The matrix keeps its pattern from call to call; it is built at the first call and again only when a stencil list
   // brings a coupling that is not in it.
   Evaluation hessian(const Eigen::Matrix3Xd& x, Projection projection, Eigen::Matrix3Xd& gradient, BlockMatrix& matrix);
+
+  // N/m, mean over the axes: what resists the motion of this vertex alone, the others or, where it is carried, the
+  // other bodies being held. 0 for a fixed one. `matrix`: of the last hessian().
+  double stiffness_at(int vertex, const BlockMatrix& matrix) const;
 
   // What is not computed and why, one line each ("inertia: Hessian is constant, assembled once").
   std::vector<std::string> skipped() const;

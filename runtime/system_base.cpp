@@ -54,8 +54,7 @@ void System::Impl::update_base(Projection projection) {
     term.indefinite = 0;
     for (int chunk = 0; chunk < static_cast<int>(term.results.size()); ++chunk) {
       lanes::ChunkResult result{};
-      term.operations->hessian(term.stencils, term.range(chunk), term.blocks(chunk), points_of(term),
-                               static_cast<int>(projection), rooms[0].view(), nullptr, base.values().data(), &result);
+      add_chunk(term, chunk, projection, rooms[0], nullptr, base.values().data(), &result);
       term.indefinite += result.indefinite;
     }
   }

@@ -26,7 +26,7 @@ size_t SystemTerm::largest_chunk() const {
   const Potential::Impl& d = data();
   if (d.stencil_version > 1) return static_cast<size_t>(d.chunk * d.lanes * d.points * (d.points + 1) / 2);
   size_t largest = 0;
-  for (size_t chunk = 0; chunk < results.size(); ++chunk) largest = std::max(largest, parts[chunk].row.size());
+  for (size_t chunk = 0; chunk < results.size(); ++chunk) largest = std::max(largest, parts[chunk].sums());
   return largest;
 }
 
@@ -75,11 +75,15 @@ void SystemTerm::list_vertices(std::vector<SystemRoom>& rooms) {
   }
 }
 
-void SystemTerm::colour(std::vector<SystemRoom>& rooms, std::vector<unsigned long long>& taken) {
+void SystemTerm::colour(std::vector<SystemRoom>& rooms, std::vector<unsigned long long>& taken,
+                        const std::vector<int>& lead) {
   if (coloured_stencils == data().stencil_version) return;
   coloured_stencils = data().stencil_version;
   list_vertices(rooms);
-  // Every chunk gets the first colour that no chunk before it has at one of its vertices.
+  // Every chunk gets the first colour that no chunk before it has at one of its vertices, or at another of a body.
+  const auto mark = [&](int v) -> unsigned long long& {
+    return taken[static_cast<size_t>(lead.empty() ? v : lead[static_cast<size_t>(v)])];
+  };
   const size_t count = results.size();
   colour_of.assign(count, -1);
   int colours = 0;
@@ -89,10 +93,10 @@ void SystemTerm::colour(std::vector<SystemRoom>& rooms, std::vector<unsigned lon
     for (size_t chunk = 0; chunk < count; ++chunk) {
       if (colour_of[chunk] >= 0) continue;
       unsigned long long mask = 0;
-      for (const int v : parts[chunk].vertices) mask |= taken[static_cast<size_t>(v)];
+      for (const int v : parts[chunk].vertices) mask |= mark(v);
       if (~mask == 0) continue;
       const int colour = __builtin_ctzll(~mask);
-      for (const int v : parts[chunk].vertices) taken[static_cast<size_t>(v)] |= 1ULL << colour;
+      for (const int v : parts[chunk].vertices) mark(v) |= 1ULL << colour;
       colour_of[chunk] = first + colour;
       colours = std::max(colours, first + colour + 1);
       --left;
@@ -108,7 +112,7 @@ void SystemTerm::colour(std::vector<SystemRoom>& rooms, std::vector<unsigned lon
   colour_start.pop_back();
 }
 
-bool SystemTerm::number(std::vector<SystemRoom>& rooms, const std::vector<int>& block_of, unsigned long fixed) {
+bool SystemTerm::number(std::vector<SystemRoom>& rooms, const SystemNumbers& numbers, unsigned long fixed) {
   const Potential::Impl& d = data();
   if (numbered_stencils == d.stencil_version && numbered_fixed == fixed) return false;
   numbered_stencils = d.stencil_version;
@@ -123,14 +127,16 @@ bool SystemTerm::number(std::vector<SystemRoom>& rooms, const std::vector<int>& 
     for (int chunk = 0; chunk < static_cast<int>(results.size()); ++chunk) {
       SystemChunk& part = parts[static_cast<size_t>(chunk)];
       room.block.clear();
+      bool carried = false;
       for (const int v : part.vertices) {
-        const int block = block_of[static_cast<size_t>(v)];
-        room.place[static_cast<size_t>(v)] = block < 0 ? -1 : static_cast<int>(room.block.size());
-        if (block >= 0) room.block.push_back(block);
+        const int number = numbers.number[static_cast<size_t>(v)];
+        room.place[static_cast<size_t>(v)] = number < 0 ? -1 : static_cast<int>(room.block.size());
+        if (number >= 0) room.block.push_back(number);
+        carried = carried || numbers.carried(number);
       }
       const lanes::BlockRange r = range(chunk);
       const size_t lanes_in = static_cast<size_t>((r.last - r.first) * d.lanes), free = room.block.size();
-      const size_t most_free = std::min(block_of.size(), lanes_in * points),
+      const size_t most_free = std::min(numbers.number.size(), lanes_in * points),
                    words = most_free * ((most_free + 63) / 64);
       const auto grow = [](auto& list, size_t size) {
         if (list.size() < size) list.resize(size, 0);
@@ -144,6 +150,11 @@ bool SystemTerm::number(std::vector<SystemRoom>& rooms, const std::vector<int>& 
           stencils, r,
           {static_cast<int>(free), room.place.data(), room.block.data(), room.places.data(), room.bits.data(),
            room.rank.data(), slots.data(), turned.data(), room.row.data(), room.column.data()});
+      part.pairs.clear();
+      if (carried) {
+        carry_pairs(room, count, numbers, part);
+        continue;
+      }
       if (d.stencil_version > 1) {
         for (std::vector<int>* list : {&part.row, &part.column, &part.index, &part.offset, &part.stride}) {
           list->reserve(lanes_in * pairs);

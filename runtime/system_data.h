@@ -1,6 +1,7 @@
 #pragma once
 // What a System holds. Included by system*.cpp only.
 
+#include <array>
 #include <vector>
 
 #include "runtime/aligned.h"
@@ -16,9 +17,43 @@ struct RestConfiguration {
   AlignedVector<double> displacement;  // x - X, 4 per vertex
 };
 
+// The blocks of the matrix that a vertex moves with, and its weights among them: one of its own, or the four of a body.
+struct VertexBlocks {
+  int first = 0;
+  int count = 1;
+  std::array<double, 4> weights{1, 0, 0, 0};
+};
+
+// Whose degrees of freedom the vertices have. Numbers stand for vertices: its block row for one that is free, behind
+// all of these for one that is carried.
+struct SystemNumbers {
+  std::vector<int> block_of;  // per vertex; -1 when it is fixed or carried
+  std::vector<int> number;    // per vertex; -1 when it is fixed
+  int free = 0;
+  Carriers carriers;
+  // The rest is empty where nothing is carried.
+  std::vector<int> lead;           // per vertex: one vertex for all that have blocks in common
+  std::vector<int> first_block;    // per body
+  std::vector<int> body_of_block;  // -1: not of a control point
+
+  bool carried(int number) const { return number >= free; }
+  VertexBlocks blocks_of(int number) const;
+};
+
+// The sum of a chunk's blocks of one pair of vertices, on its way to those of the matrix: J^T H J.
+struct CarriedPair {
+  int first = 0;  // into SystemChunk::places: rows*columns of them, or those with column <= row
+  int rows = 1, columns = 1;
+  bool turned = false;    // the rows are those of the second vertex
+  bool triangle = false;  // both are of one body
+  bool diagonal = false;  // both are one vertex
+  std::array<double, 4> row_weights{}, column_weights{};
+};
+
 // Room of one thread.
 struct SystemRoom {
   AlignedVector<double> sums;
+  AlignedVector<double> pair_blocks;  // 9 for each pair of vertices of a chunk
   AlignedVector<double> scratch;
   std::vector<int> place;  // per vertex of the system
   std::vector<int> block, places, rank, row, column;
@@ -32,6 +67,10 @@ struct SystemChunk {
   std::vector<int> row, column;     // of the matrix blocks it adds to, by column and then row; each once
   std::vector<int> index;           // of these in the pattern
   std::vector<int> offset, stride;  // lanes::ChunkBlocks
+  // Where it has carried vertices, else empty: what is summed is the blocks of pairs of vertices.
+  std::vector<CarriedPair> pairs;
+  std::vector<int> places;  // into row and column
+  size_t sums() const { return pairs.empty() ? row.size() : pairs.size(); }
 };
 
 // One potential of a system with what evaluation needs beside its own data. Its stencils are cut into chunks, and the
@@ -81,10 +120,10 @@ struct SystemTerm {
 
   // Takes a changed list over. Throws InputError for a vertex that is not one of the system's.
   void check(int vertices);
-  // Colours the chunks if the list changed.
-  void colour(std::vector<SystemRoom>& rooms, std::vector<unsigned long long>& taken);
+  // Colours the chunks if the list changed. `lead`: SystemNumbers.
+  void colour(std::vector<SystemRoom>& rooms, std::vector<unsigned long long>& taken, const std::vector<int>& lead);
   // Numbers the matrix blocks of every chunk if the list or the fixed vertices changed; whether it did.
-  bool number(std::vector<SystemRoom>& rooms, const std::vector<int>& block_of, unsigned long fixed);
+  bool number(std::vector<SystemRoom>& rooms, const SystemNumbers& numbers, unsigned long fixed);
   // Finds the places of all blocks in the pattern; how many are not in it.
   long find(const BlockPattern& pattern);
   // Whether the constant Hessian differs from that of the last call.
@@ -92,13 +131,14 @@ struct SystemTerm {
 
  private:
   void list_vertices(std::vector<SystemRoom>& rooms);
+  static void carry_pairs(const SystemRoom& room, int count, const SystemNumbers& numbers, SystemChunk& part);
 };
 
 struct System::Impl {
   int vertices = 0;
-  int free_vertices = 0;
-  std::vector<int> block_of;
-  unsigned long fixed_version = 1;
+  std::vector<char> fixed;
+  SystemNumbers numbers;
+  unsigned long fixed_version = 1;  // of both
   std::vector<SystemTerm> terms;
   std::vector<size_t> first_terms;  // of each potential
 
@@ -127,9 +167,10 @@ struct System::Impl {
 
   AlignedVector<double> x;  // 4 per vertex
   std::vector<RestConfiguration> configurations;
-  AlignedVector<double> gradient;         // 4 per vertex
-  std::vector<SystemRoom> rooms;          // per thread
-  std::vector<unsigned long long> taken;  // per vertex: room of the colouring
+  AlignedVector<double> gradient;             // 4 per vertex
+  std::vector<SystemRoom> rooms;              // per thread
+  std::vector<int> pair_offset, pair_stride;  // lanes::ChunkBlocks of SystemRoom::pair_blocks
+  std::vector<unsigned long long> taken;      // per vertex: room of the colouring
 
   // Brings prepared data up to date, and the colouring where it is `coloured`.
   void prepare(bool coloured);
@@ -149,6 +190,11 @@ struct System::Impl {
   const double* points_of(const SystemTerm& term) const;
   // Gives a term whose q is F - I a configuration that agrees with its rest positions.
   void find_configuration(SystemTerm& term);
+  // Adds the Hessians of a chunk to the values of a matrix in whose pattern its blocks were found, and the gradients
+  // (unless null).
+  void add_chunk(SystemTerm& term, int chunk, Projection projection, SystemRoom& room, double* gradients,
+                 double* values, lanes::ChunkResult* result);
+  void number_vertices();
   // Finds who writes each block first, if pattern or slots changed.
   void update_first();
   // Called by all threads of a team: writes the base and clears what no chunk stores.

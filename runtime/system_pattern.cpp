@@ -64,7 +64,7 @@ void System::Impl::make_pattern(bool forget) {
     take(pattern != nullptr ? base_index[k] : -1, base_row[k], base_column[k]);
   }
   if (spare == nullptr || spare.use_count() > 1) spare = std::make_shared<BlockPattern>();
-  builder.build(free_vertices, pattern.get(), recent, *spare);
+  builder.build(numbers.free, pattern.get(), recent, *spare);
   std::swap(pattern, spare);
   clear_marks(recent, pattern->blocks());
   unused_for = 0;
@@ -88,12 +88,12 @@ void System::Impl::update_base_pattern() {
     }
   }
   base_pattern = std::make_shared<BlockPattern>();
-  builder.build(free_vertices, nullptr, {}, *base_pattern);
+  builder.build(numbers.free, nullptr, {}, *base_pattern);
   base.set_pattern(base_pattern);
   base_known = false;
   base_row = base_pattern->block_row;
   base_column.clear();
-  for (int j = 0; j < free_vertices; ++j) base_column.resize(static_cast<size_t>(base_pattern->block_start[j + 1]), j);
+  for (int j = 0; j < numbers.free; ++j) base_column.resize(static_cast<size_t>(base_pattern->block_start[j + 1]), j);
   for (SystemTerm& term : terms) {
     if (term.constant()) term.find(*base_pattern);
   }
@@ -102,7 +102,7 @@ void System::Impl::update_base_pattern() {
 void System::Impl::update_pattern() {
   bool base_changed = false, changed = false;
   for (SystemTerm& term : terms) {
-    if (!term.in_matrix() || !term.number(rooms, block_of, fixed_version)) continue;
+    if (!term.in_matrix() || !term.number(rooms, numbers, fixed_version)) continue;
     (term.constant() ? base_changed : changed) = true;
     term.placed_pattern = 0;
   }
@@ -128,6 +128,12 @@ void System::Impl::size_rooms() {
     const size_t sums = (blocks + 1) * lanes::kSumDoubles;
     if (room.sums.size() < sums) room.sums.resize(sums, 0.0);
     if (room.scratch.size() < scratch) room.scratch.resize(scratch);
+    if (numbers.carriers.empty()) continue;
+    if (room.pair_blocks.size() < 9 * blocks) room.pair_blocks.resize(9 * blocks);
+  }
+  for (size_t k = pair_offset.size(); k < blocks && !numbers.carriers.empty(); ++k) {
+    pair_offset.push_back(static_cast<int>(9 * k));
+    pair_stride.push_back(-3);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <numeric>
 #include <tuple>
 
@@ -34,21 +35,23 @@ Transform placing(const SceneShape& shape) {
 
 // The place of what a shape is made from, for messages.
 const Place& source_place(const SceneShape& shape) {
-  for (const char* key : {"mesh", "box", "sphere", "tube"})
+  for (const char* key : {"mesh", "box", "sphere", "tube", "torus"})
     if (shape.wrote(key)) return shape.at(key);
   return shape.place;
 }
 
 const char* kind_of_source(const SceneShape& shape) {
-  return shape.box ? "box" : shape.sphere ? "sphere" : shape.tube ? "tube" : "mesh";
+  return shape.box ? "box" : shape.sphere ? "sphere" : shape.tube ? "tube" : shape.torus ? "torus" : "mesh";
 }
 
 // A surface that is made or read, where it starts.
 Mesh placed_surface(const SceneShape& shape, const std::string& path) {
-  const Mesh surface = shape.sphere ? sphere_surface(shape.sphere->radius, shape.sphere->cuts)
-                       : shape.tube ? tube_surface(shape.tube->inner, shape.tube->outer, shape.tube->length,
-                                                   shape.tube->around, shape.tube->along)
-                                    : read_surface(path);
+  const Mesh surface =
+      shape.sphere  ? sphere_surface(shape.sphere->radius, shape.sphere->cuts)
+      : shape.tube  ? tube_surface(shape.tube->inner, shape.tube->outer, shape.tube->length, shape.tube->around,
+                                   shape.tube->along)
+      : shape.torus ? torus_surface(shape.torus->radius, shape.torus->section, shape.torus->around, shape.torus->across)
+                    : read_surface(path);
   return transformed(surface, placing(shape));
 }
 
@@ -111,17 +114,42 @@ void check_section(const SceneObject& object, Element element) {
   }
 }
 
+// The surface of cells as a mesh of its own.
+Mesh boundary_of(const Mesh& cells) {
+  Mesh out;
+  out.element = Element::tri3;
+  std::map<int, int> place;
+  for (const auto& triangle : surface_triangles(cells))
+    for (const int v : triangle) out.cells.push_back(place.emplace(v, static_cast<int>(place.size())).first->second);
+  out.X.resize(3, static_cast<int>(place.size()));
+  for (const auto& [from, to] : place) out.X.col(to) = cells.X.col(from);
+  return out;
+}
+
+// All of an affine body that matters.
+Mesh affine_surface(const SceneObject& object, const std::string& path) {
+  if (object.box)
+    return transformed(boundary_of(box_hexes(vector(object.box->size), object.box->cells)), placing(object));
+  if (!object.mesh.ends_with(".msh")) return placed_surface(object, path);
+  const Mesh cells = read_mesh(path);
+  if (dimension_of(cells.element) < 2)
+    throw InputError(fmt::format("{}: {} cells enclose no solid, as an affine body is", path, name_of(cells.element)));
+  return transformed(boundary_of(cells), placing(object));
+}
+
 Mesh load_mesh(const SceneObject& object, const std::string& folder) {
   const std::string path = (std::filesystem::path(folder) / object.mesh).lexically_normal().string();
   Mesh mesh;
-  if (object.box)
+  if (object.affine())
+    mesh = affine_surface(object, path);
+  else if (object.box)
     mesh = transformed(made_box(object), placing(object));
   else if (object.mesh.ends_with(".msh"))
     mesh = file_mesh(object, path);
   else
     mesh = filled_mesh(object, path);
   if (object.element == "tet10" && mesh.element == Element::tet4) mesh = to_quadratic(mesh, Element::tet10);
-  check_section(object, mesh.element);
+  if (!object.affine()) check_section(object, mesh.element);
   mesh.source = object.mesh.empty() ? fmt::format("{} of object '{}'", kind_of_source(object), object.name) : path;
   check_mesh(mesh);
   return mesh;
@@ -162,6 +190,24 @@ std::vector<BodyScript> scripts_of(const SceneObject& object, const Mesh& mesh) 
   return out;
 }
 
+// All vertices or none are held by these.
+bool holds_all(const std::vector<int>& held, const BoxSelector& first, const char* key, const Body& body) {
+  if (static_cast<int>(held.size()) == body.ordered.vertices()) return true;
+  throw SourceError(
+      first.place,
+      fmt::format("an affine body moves or is held as a whole: the '{}' boxes of object '{}' hold {} of its "
+                  "{} vertices; let them hold all, or leave them out",
+                  key, body.name, held.size(), body.ordered.vertices()));
+}
+
+bool is_held(const SceneObject& object, const Body& body) {
+  if (!object.fixed.empty() && holds_all(body.fixed, object.fixed.front(), "fixed", body)) return true;
+  if (object.scripted.empty()) return false;
+  std::vector<int> held;
+  for (const BodyScript& script : body.scripts) held.insert(held.end(), script.vertices.begin(), script.vertices.end());
+  return holds_all(held, object.scripted.front(), "scripted", body);
+}
+
 void order(Body& body) {
   ReorderedMesh reordered = spatial_order(body.mesh);
   body.ordered = std::move(reordered.mesh);
@@ -174,14 +220,17 @@ Body load_body(const SceneObject& object, const std::string& folder) {
   Body body;
   body.name = object.name;
   const Place& place = source_place(object);
+  std::optional<SolidMoments> moments;
   try {
     body.mesh = load_mesh(object, folder);
+    if (object.affine()) moments = solid_moments(body.mesh);
   } catch (const InputError& bad) {
     throw SourceError(place, fmt::format("object '{}': {}", object.name, bad.what()));
   }
   order(body);
   body.fixed = fixed_vertices(object, body.ordered);
   body.scripts = scripts_of(object, body.ordered);
+  if (object.affine() && !is_held(object, body)) body.moments = moments;
   body.quadrature = object.quadrature;
   body.section = section_of(object, dimension_of(body.mesh.element));
   if (dimension_of(body.ordered.element) < 2)
@@ -215,6 +264,10 @@ Body load_obstacle(const SceneObstacle& obstacle, const std::string& folder) {
   std::iota(body.fixed.begin(), body.fixed.end(), 0);
   if (!obstacle.motion.empty()) body.scripts.push_back({body.fixed, vector(obstacle.center), obstacle.motion});
   return body;
+}
+
+int vertices_of(const std::vector<Body>& bodies) {
+  return bodies.back().first_vertex + bodies.back().ordered.vertices();
 }
 
 }  // namespace ergon

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "runtime/mesh/mesh.h"
+#include "runtime/mesh/solid_moments.h"
 #include "scenes/scene.h"
 
 namespace ergon {
@@ -28,11 +29,20 @@ struct Body {
   std::optional<int> quadrature;  // exactness; absent: the element's own
   double section = 1;             // rest volume per measure of its cells: 1, a membrane's thickness (m), a line's (m^2)
   int first_vertex = 0;           // of `ordered` among all vertices of the scene
+  // An affine body, unless all of it is fixed or follows a script.
+  std::optional<SolidMoments> moments;
+  int first_control = 0;  // of its four control points among all vertices of the scene
+
+  bool affine() const { return moments.has_value(); }
 };
 
 // `folder` is what paths are relative to. Throws SourceError at the scene's line for whatever the mesh functions
-// refuse: missing and broken files, open surfaces, inverted or flat cells; and for a `fixed` box that holds no vertex.
+// refuse: missing and broken files, open surfaces, inverted or flat cells; for a `fixed` box that holds no vertex, and
+// where such boxes hold a part of an affine body.
 Body load_body(const SceneObject& object, const std::string& folder);
+
+// Of all bodies together; the control points of affine ones are not among them.
+int vertices_of(const std::vector<Body>& bodies);
 
 // The surface of an obstacle, none of whose vertices is free; it has no mass and no laws.
 Body load_obstacle(const SceneObstacle& obstacle, const std::string& folder);

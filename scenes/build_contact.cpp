@@ -73,10 +73,11 @@ CollisionSurface collision_surface(const Scene& scene, const BuiltScene& built) 
     objects.push_back({shape.name, &built.bodies[b].ordered, built.bodies[b].first_vertex, shape.offset});
   }
   std::vector<char> moving(static_cast<size_t>(built.system->vertices()), 1);
-  for (int v = 0; v < built.system->vertices(); ++v) moving[static_cast<size_t>(v)] = built.system->block_of(v) >= 0;
+  for (int v = 0; v < built.system->vertices(); ++v) moving[static_cast<size_t>(v)] = built.system->moves(v);
   for (const int v : built.script.vertices()) moving[static_cast<size_t>(v)] = 1;
   CollisionSurface surface = make_surface(objects, std::move(moving));
-  for (size_t b = 0; b < built.bodies.size(); ++b) surface.meet[b][b] = shape_of(scene, b).touches_itself;
+  for (size_t b = 0; b < built.bodies.size(); ++b)
+    surface.meet[b][b] = shape_of(scene, b).touches_itself && !built.bodies[b].affine();
   return surface;
 }
 

@@ -11,6 +11,7 @@
 #include "runtime/mesh/element_faces.h"
 #include "runtime/mesh/mesh_tools.h"
 #include "runtime/solver/stopwatch.h"
+#include "scenes/build_affine.h"
 #include "scenes/build_contact.h"
 #include "scenes/laws.h"
 #include "scenes/start_check.h"
@@ -33,6 +34,7 @@ struct UsedLaw {
 struct WorldLaws {
   const Energy* inertia = nullptr;
   const Energy* gravity = nullptr;
+  const Energy* orthogonality = nullptr;
   ContactLaws contact;
 };
 
@@ -44,6 +46,8 @@ WorldLaws world_laws(const Scene& scene, Laws& laws, std::vector<std::string>& s
     skipped.push_back("gravity: it is zero in this scene, no kernel loaded");
   else
     out.gravity = &laws.get("gravity", whole);
+  if (std::any_of(scene.objects.begin(), scene.objects.end(), [](const SceneObject& o) { return o.affine(); }))
+    out.orthogonality = &laws.get("affine_orthogonality", whole);
   out.contact = contact_laws(scene, laws, skipped);
   return out;
 }
@@ -95,10 +99,12 @@ std::vector<int> points_of(int first, int count) {
 }
 
 // Rest data that a point energy declares by this name.
-std::map<std::string, std::vector<double>> point_masses(const Energy& energy, const Eigen::VectorXd& mass, int first,
-                                                        int count) {
+std::map<std::string, std::vector<double>> point_masses(const Energy& energy, const Eigen::VectorXd& mass,
+                                                        const std::vector<int>& points) {
   if (energy.find("mass") == nullptr || energy.find("mass")->role != Role::rest) return {};
-  return {{"mass", std::vector<double>(mass.data() + first, mass.data() + first + count)}};
+  std::vector<double> out;
+  for (const int v : points) out.push_back(mass[v]);
+  return {{"mass", out}};
 }
 
 Potential object_potential(const UsedLaw& law, const Kernel& kernel, const Body& body, const Eigen::Matrix3Xd& X,
@@ -108,8 +114,9 @@ Potential object_potential(const UsedLaw& law, const Kernel& kernel, const Body&
     return Potential::on_mesh(law.energy->name, kernel, body.ordered, first, law.params, body.quadrature);
   if (law.energy->geometry == "edge")
     return Potential::on_stencils(law.energy->name, kernel, edges_of(body), X, law.params, {});
-  return Potential::on_stencils(law.energy->name, kernel, points_of(first, count), X, law.params,
-                                point_masses(*law.energy, mass, first, count));
+  const std::vector<int> points = points_of(first, count);
+  return Potential::on_stencils(law.energy->name, kernel, points, X, law.params,
+                                point_masses(*law.energy, mass, points));
 }
 
 // Densities of solids live on solids, and so on.
@@ -129,10 +136,12 @@ void check_geometries(const Scene& scene, const std::vector<std::vector<UsedLaw>
   }
 }
 
-// Those before the first obstacle's.
-int vertices_of_objects(const Scene& scene, const std::vector<Body>& bodies) {
-  const Body& last = bodies[scene.objects.size() - 1];
-  return last.first_vertex + last.ordered.vertices();
+// Vertices that have mass: not those of obstacles, nor those that affine bodies carry or that hold one in its place.
+std::vector<int> heavy_points(const Eigen::VectorXd& mass) {
+  std::vector<int> out;
+  for (int v = 0; v < mass.size(); ++v)
+    if (mass[v] > 0) out.push_back(v);
+  return out;
 }
 
 void add_object(const SceneObject& object, const std::vector<UsedLaw>& laws, const Body& body,
@@ -146,13 +155,14 @@ void add_object(const SceneObject& object, const std::vector<UsedLaw>& laws, con
 
 void add_world(const Scene& scene, const WorldLaws& world, const UsedKernels& kernels, BuiltScene& out) {
   const Eigen::Matrix3Xd& X = out.start.x;
-  const int n = vertices_of_objects(scene, out.bodies);
-  out.system->add(Potential::on_stencils("inertia", kernels.get(*world.inertia), points_of(0, n), X, {},
-                                         point_masses(*world.inertia, out.mass, 0, n)));
+  const std::vector<int> points = heavy_points(out.mass);
+  if (world.orthogonality != nullptr) add_affine_potentials(scene, kernels.get(*world.orthogonality), out);
+  out.system->add(Potential::on_stencils("inertia", kernels.get(*world.inertia), points, X, {},
+                                         point_masses(*world.inertia, out.mass, points)));
   if (world.gravity != nullptr)
-    out.system->add(Potential::on_stencils("gravity", kernels.get(*world.gravity), points_of(0, n), X,
+    out.system->add(Potential::on_stencils("gravity", kernels.get(*world.gravity), points, X,
                                            {{"g", {scene.gravity.begin(), scene.gravity.end()}}},
-                                           point_masses(*world.gravity, out.mass, 0, n)));
+                                           point_masses(*world.gravity, out.mass, points)));
   add_contact(scene, world.contact, kernels, out);
 }
 
@@ -200,6 +210,11 @@ void lay_out(const Scene& scene, BuiltScene& out) {
     body.first_vertex = vertices;
     vertices += body.ordered.vertices();
   }
+  for (Body& body : out.bodies) {
+    if (!body.affine()) continue;
+    body.first_control = vertices;
+    vertices += 4;
+  }
   out.start.x.resize(3, vertices);
   out.start.v.setZero(3, vertices);
   out.mass.setZero(vertices);
@@ -210,7 +225,9 @@ void lay_out(const Scene& scene, BuiltScene& out) {
     out.start.x.middleCols(first, count) = body.ordered.X;
     if (i < scene.objects.size()) {
       out.start.v.middleCols(first, count).colwise() = vector(scene.objects[i].velocity);
-      out.mass.segment(first, count) = lumped_masses(body.ordered, scene.objects[i].density * body.section);
+      if (!scene.objects[i].affine())
+        out.mass.segment(first, count) = lumped_masses(body.ordered, scene.objects[i].density * body.section);
+      if (body.affine()) start_affine(scene.objects[i], body, out);
     }
     const auto hold = [&](const std::vector<int>& vertices) {
       for (int vertex : vertices) {
@@ -229,6 +246,7 @@ void lay_out(const Scene& scene, BuiltScene& out) {
                       "every vertex of the scene is fixed: nothing can move");
   out.system = std::make_unique<System>(vertices);
   out.system->set_fixed(fixed);
+  out.system->set_carriers(carriers_of(out.bodies));
 }
 
 std::vector<Probe> probes_of(const Scene& scene, const BuiltScene& built) {
@@ -274,6 +292,7 @@ BuiltScene build_scene(const Scene& scene, const Catalogue& catalogue, const Ker
       for (const UsedLaw& law : object) kernels.want(law.energy);
     kernels.want(world.inertia);
     kernels.want(world.gravity);
+    kernels.want(world.orthogonality);
     want_kernels(world.contact, kernels);
     kernels.load(kernel_source);
   }

@@ -18,7 +18,7 @@ bool is_frame(const fs::path& path) {
 
 // A vector per vertex, from the order in which it is computed.
 Eigen::MatrixXd in_order_of_source(const std::vector<Body>& bodies, const Eigen::Matrix3Xd& field) {
-  Eigen::MatrixXd out(3, field.cols());
+  Eigen::MatrixXd out(3, vertices_of(bodies));
   for (const Body& body : bodies) {
     for (size_t i = 0; i < body.vertex_from.size(); ++i) {
       out.col(body.first_vertex + body.vertex_from[i]) = field.col(body.first_vertex + static_cast<int>(i));

@@ -113,7 +113,7 @@ RunSummary summary_of_start(const Scene& scene, const BuiltScene& built, double 
   RunSummary out;
   out.scene = scene.file;
   out.threads = omp_get_max_threads();
-  out.vertices = built.system->vertices();
+  out.vertices = vertices_of(built.bodies);
   for (const Body& body : built.bodies) out.cells += body.mesh.cell_count();
   out.start_energy = out.end_energy = start_energy;
   out.build = built.seconds;

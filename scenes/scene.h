@@ -75,13 +75,21 @@ struct TubeSource : Located {
   int along = 16;
 };
 
-// Where the shape of an object or obstacle comes from and where it starts. One of the first four is given.
+struct TorusSource : Located {
+  double radius = 0;   // m, of the circle amid, around z
+  double section = 0;  // m, radius of the cross-section
+  int around = 32;     // cells
+  int across = 12;
+};
+
+// Where the shape of an object or obstacle comes from and where it starts. One of the first five is given.
 struct SceneShape : Located {
   std::string name;
   std::string mesh;              // path relative to the scene file
   std::optional<BoxSource> box;  // one corner at the origin before the shape is moved
   std::optional<SphereSource> sphere;
   std::optional<TubeSource> tube;
+  std::optional<TorusSource> torus;
   double scale = 1;
   Vector3 rotate = {0, 0, 0};     // rad, about x, then y, then z (fixed axes)
   Vector3 translate = {0, 0, 0};  // m
@@ -103,7 +111,9 @@ struct ScriptedBox : BoxSelector {
 };
 
 struct SceneObject : SceneShape {
-  double max_edge = 0;  // m, of the tetrahedra that fill a surface; 0: continued from the surface
+  std::string kinematics = "free";
+  double stiffness = 1e8;  // Pa, of an affine body against strains
+  double max_edge = 0;     // m, of the tetrahedra that fill a surface; 0: continued from the surface
   std::string element = "tet4";
   std::optional<int> quadrature;  // exactness; absent: the element's own
   double density = 0;             // kg/m^3
@@ -113,6 +123,8 @@ struct SceneObject : SceneShape {
   std::vector<EnergyUse> energies;
   std::vector<BoxSelector> fixed;
   std::vector<ScriptedBox> scripted;
+
+  bool affine() const { return kinematics == "affine"; }
 };
 
 // A surface without degrees of freedom, at rest or moved by a script.

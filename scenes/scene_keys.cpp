@@ -175,9 +175,28 @@ std::vector<std::string> element_names() {
   return {"tet4", "tet10", "hex8", "hex20", "hex27", "prism6", "tri3", "tri6", "quad4", "quad9", "edge2", "edge3"};
 }
 
+// What a body that does not bend has no use for.
+void check_affine(const SceneObject& object) {
+  for (const auto& [key, why] :
+       {std::pair("energy", "of its shape it knows 'stiffness' alone"),
+        std::pair("element", "its shape is the surface alone"), std::pair("max_edge", "its shape is the surface alone"),
+        std::pair("quadrature", "its mass is that within the surface, exactly"),
+        std::pair("thickness", "it is the solid within its surface"),
+        std::pair("cross_section", "it is the solid within its surface")})
+    if (object.wrote(key))
+      throw SourceError(object.at(key), fmt::format("'{}' has no use for an affine body: {}", key, why));
+}
+
 void check_object(const std::string&, const SceneObject& object) {
   check_shape(object);
-  const bool surface = (object.wrote("mesh") && !object.mesh.ends_with(".msh")) || object.sphere || object.tube;
+  if (object.affine()) return check_affine(object);
+  if (object.wrote("stiffness"))
+    throw SourceError(object.at("stiffness"),
+                      "'stiffness' is that of an affine body; set kinematics = \"affine\" or leave it out");
+  if (!object.wrote("energy"))
+    throw SourceError(object.place, "[[object]] lacks [[object.energy]]: what the object is made of");
+  const bool surface =
+      (object.wrote("mesh") && !object.mesh.ends_with(".msh")) || object.sphere || object.tube || object.torus;
   if (object.wrote("max_edge") && !surface)
     throw SourceError(object.at("max_edge"),
                       "'max_edge' has no use here: it is for surface meshes (.obj, .stl, .ply), which are filled with "
@@ -188,8 +207,14 @@ void check_object(const std::string&, const SceneObject& object) {
 
 Section<SceneObject> object_section() {
   using T = SceneObject;
-  Section<T> out{"[[object]]", "A deformable body.", {}, {}, {}};
+  Section<T> out{"[[object]]", "A body that moves: deformable, or affine and nearly rigid.", {}, {}, {}};
   out.keys = {
+      choice_key(
+          "kinematics", &T::kinematics, {"free", "affine"},
+          "free: every vertex by itself; affine: a solid of 12 degrees of freedom, moved by four points, of which "
+          "its closed surface is carried"),
+      number_key("stiffness", &T::stiffness, "Pa", positive, Need::optional,
+                 "of an affine body: what keeps its map near a rotation (energy affine_orthogonality)"),
       number_key("max_edge", &T::max_edge, "m", positive, Need::optional,
                  "longest edge wanted of the tetrahedra that fill a surface, after scaling",
                  "continued from the surface"),
@@ -206,7 +231,7 @@ Section<SceneObject> object_section() {
       number_key("cross_section", &T::cross_section, "m^2", positive, Need::optional, "of a line, for its mass",
                  "required for lines"),
       vector_key("velocity", &T::velocity, "m/s", any, Need::optional, "velocity at the start"),
-      tables_key("energy", &T::energies, energy_section, Need::required, "what the object is made of"),
+      tables_key("energy", &T::energies, energy_section, Need::optional, "what a free object is made of; at least one"),
       tables_key("fixed", &T::fixed, fixed_section, Need::optional, "vertices that never move"),
       tables_key("scripted", &T::scripted, scripted_section, Need::optional, "vertices that follow a script"),
   };
@@ -265,7 +290,7 @@ Section<Scene> scene_section() {
       table_key("time", &T::time, time_section, Need::required, "how long to simulate"),
       table_key("solver", &T::solver, solver_section, Need::optional, "how each step is solved"),
       table_key("output", &T::output, output_section, Need::optional, "what is written"),
-      tables_key("object", &T::objects, object_section, Need::required, "at least one deformable body"),
+      tables_key("object", &T::objects, object_section, Need::required, "at least one body that moves"),
       tables_key("obstacle", &T::obstacles, obstacle_section, Need::optional, "surfaces without degrees of freedom"),
       tables_key("ground", &T::grounds, ground_section, Need::optional, "half-spaces"),
       tables_key("probe", &T::probes, probe_section, Need::optional, "vertices whose paths are written"),

@@ -82,6 +82,24 @@ Section<TubeSource> tube_section() {
 }
 
 template <class Owner>
+Section<TorusSource> torus_section() {
+  using T = TorusSource;
+  Section<T> out{fmt::format("[{}.torus]", table_name<Owner>()), "A ring around the z axis.", {}, {}, {}};
+  out.keys = {
+      number_key("radius", &T::radius, "m", key_ranges::positive, Need::required, "of the circle amid the ring"),
+      number_key("section", &T::section, "m", key_ranges::positive, Need::required, "radius of the cross-section"),
+      integer_key("around", &T::around, {3, 10000, false, false}, Need::optional, "cells"),
+      integer_key("across", &T::across, {3, 10000, false, false}, Need::optional, "cells"),
+  };
+  out.check = [](const std::string&, const T& torus) {
+    if (torus.radius <= torus.section)
+      throw SourceError(torus.at("radius"), fmt::format("'radius' must exceed 'section', found {} m and {} m",
+                                                        torus.radius, torus.section));
+  };
+  return out;
+}
+
+template <class Owner>
 Section<MotionKey> motion_section() {
   using T = MotionKey;
   Section<T> out{std::is_same_v<Owner, SceneObject> ? "[[object.scripted.key]]" : "[[obstacle.key]]",
@@ -112,10 +130,11 @@ template <class T>
 std::vector<Key<T>> shape_keys(const std::string& mesh_help) {
   return {
       text_key<T>("name", &T::name, Need::required, "a name of its own, used in messages and results"),
-      text_key<T>("mesh", &T::mesh, Need::optional, mesh_help, "give `mesh`, `box`, `sphere` or `tube`"),
+      text_key<T>("mesh", &T::mesh, Need::optional, mesh_help, "give `mesh`, `box`, `sphere`, `tube` or `torus`"),
       table_key<T, BoxSource>("box", &T::box, box_section<T>, "instead of a mesh file"),
       table_key<T, SphereSource>("sphere", &T::sphere, sphere_section<T>, "instead of a mesh file"),
       table_key<T, TubeSource>("tube", &T::tube, tube_section<T>, "instead of a mesh file"),
+      table_key<T, TorusSource>("torus", &T::torus, torus_section<T>, "instead of a mesh file"),
       number_key<T, double>("scale", &T::scale, "1", key_ranges::positive, Need::optional,
                             "factor on the mesh's coordinates"),
       vector_key<T>("rotate", &T::rotate, "rad", key_ranges::any, Need::optional,
@@ -133,14 +152,15 @@ void check_shape(const T& shape) {
   const std::vector<std::pair<const char*, bool>> sources = {{"mesh", shape.wrote("mesh")},
                                                              {"box", shape.box.has_value()},
                                                              {"sphere", shape.sphere.has_value()},
-                                                             {"tube", shape.tube.has_value()}};
+                                                             {"tube", shape.tube.has_value()},
+                                                             {"torus", shape.torus.has_value()}};
   std::vector<const char*> given;
   for (const auto& [key, is_given] : sources)
     if (is_given) given.push_back(key);
   if (given.empty())
     throw SourceError(shape.place,
-                      fmt::format("{} '{}' lacks 'mesh' (a file), 'box' (size and cells), 'sphere' (radius) or 'tube' "
-                                  "(inner, outer, length)",
+                      fmt::format("{} '{}' lacks 'mesh' (a file), 'box' (size and cells), 'sphere' (radius), 'tube' "
+                                  "(inner, outer, length) or 'torus' (radius, section)",
                                   table_name<T>(), shape.name));
   if (given.size() > 1)
     throw SourceError(shape.at(given[1]), fmt::format("{} '{}' has both '{}' and '{}'; keep one of them",

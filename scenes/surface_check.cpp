@@ -45,6 +45,9 @@ std::string close_text(const BuiltScene& built, const std::vector<int>& stencil)
 }  // namespace
 
 std::string vertex_text(const BuiltScene& built, int vertex) {
+  for (const Body& body : built.bodies)
+    if (body.affine() && vertex >= body.first_control && vertex < body.first_control + 4)
+      return fmt::format("the affine map of '{}'", body.name);
   const Body& body = built.bodies[body_of(built, vertex)];
   return fmt::format("vertex {} of '{}'", own_number(body, vertex), body.name);
 }

@@ -82,7 +82,7 @@ double GroundContact::gap(const Side& side, const Eigen::Matrix3Xd& x, int verte
   return side.ground.normal.dot(x.col(vertex)) - side.ground.height;
 }
 
-bool GroundContact::is_free(int vertex) const { return system_->block_of(vertex) >= 0; }
+bool GroundContact::is_free(int vertex) const { return system_->moves(vertex); }
 
 void GroundContact::check_start(const Eigen::Matrix3Xd& x) const {
   for (const Side& side : sides_) {

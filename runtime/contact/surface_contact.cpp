@@ -61,7 +61,7 @@ SurfaceContact::SurfaceContact(System& system, CollisionSurface surface, const S
       broad_(surface_),
       probe_(laws.barrier[0], options_.dhat),
       kappa_(probe_, options_.dhat, static_cast<int>(surface_.radius.size()), options_.stiffness),
-      mass_(mass) {
+      mass_(system.carriers().resisting_mass(mass)) {
   for (int v = 0; v < system.vertices(); ++v) {
     if (system.block_of(v) >= 0) weight_ += mass[v] * gravity.norm();
   }
@@ -144,13 +144,9 @@ std::vector<SurfaceResistance> SurfaceContact::resistance(const Eigen::Matrix3Xd
   std::vector<SurfaceResistance> sum(surface_.radius.size());
   std::vector<double> count(sum.size(), 0);
   for (const int v : surface_.points) {
-    const int block = system_->block_of(v);
-    if (block < 0) continue;
+    if (!system_->moves(v)) continue;
     const auto object = static_cast<size_t>(surface_.object[static_cast<size_t>(v)]);
-    for (int c = 0; c < 3; ++c) {
-      const int entry = matrix.column_start()[static_cast<size_t>(3 * block + c)] + c;  // the diagonal block is first
-      sum[object].hessian += matrix.values()[static_cast<size_t>(entry)] / 3;
-    }
+    sum[object].hessian += system_->stiffness_at(v, matrix);
     sum[object].inertia += mass_[v] / (dt * dt);
     count[object] += 1;
   }

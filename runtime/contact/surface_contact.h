@@ -91,7 +91,7 @@ class SurfaceContact : public Contact {
   BroadPhase broad_;
   BarrierProbe probe_;
   PairStiffness kappa_;
-  Eigen::VectorXd mass_;  // kg
+  Eigen::VectorXd mass_;  // kg, Carriers::resisting_mass
   std::array<Law, kContactKinds> laws_;
   std::optional<SurfaceFriction> friction_;
   ActiveSet active_;

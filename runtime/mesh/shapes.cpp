@@ -126,4 +126,32 @@ Mesh tube_surface(double inner, double outer, double length, int around, int alo
   return mesh;
 }
 
+Mesh torus_surface(double radius, double section, int around, int across) {
+  if (!(section > 0) || !(radius > section) || !std::isfinite(radius))
+    throw InputError(fmt::format(
+        "a ring's radius is {:g} m and that of its section {:g} m; 0 < section < radius is needed", radius, section));
+  if (around < 3 || across < 3)
+    throw InputError(
+        fmt::format("a ring has {} cells around and {} across; at least 3 and 3 are needed", around, across));
+  Mesh mesh;
+  mesh.element = Element::tri3;
+  mesh.X.resize(3, around * across);
+  const auto vertex = [&](int i, int j) { return (i % around) * across + j % across; };
+  for (int i = 0; i < around; ++i) {
+    const double along = 2 * M_PI * i / around;
+    for (int j = 0; j < across; ++j) {
+      const double about = 2 * M_PI * j / across, distance = radius + section * std::cos(about);
+      mesh.X.col(vertex(i, j)) =
+          Eigen::Vector3d(distance * std::cos(along), distance * std::sin(along), section * std::sin(about));
+    }
+  }
+  for (int i = 0; i < around; ++i) {
+    for (int j = 0; j < across; ++j) {
+      append(mesh, vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1));
+      append(mesh, vertex(i, j), vertex(i + 1, j + 1), vertex(i, j + 1));
+    }
+  }
+  return mesh;
+}
+
 }  // namespace ergon

@@ -14,4 +14,9 @@ Mesh sphere_surface(double radius, int cuts);
 // and along >= 1.
 Mesh tube_surface(double inner, double outer, double length, int around, int along);
 
+// A ring around the z axis: a circle of `section` (m) whose centre runs along one of `radius` in the plane z = 0, cut
+// into `around` by `across` quadrilaterals, and each of these in two. Throws InputError unless 0 < section < radius,
+// around >= 3 and across >= 3.
+Mesh torus_surface(double radius, double section, int around, int across);
+
 }  // namespace ergon

@@ -47,6 +47,7 @@ Rounding measure_rounding(System& system, const Eigen::Matrix3Xd& x, const Evalu
       moved(c, v) *= 1 + (random >> 31 ? 4 : -4) * std::numeric_limits<double>::epsilon();
     }
   }
+  system.carriers().place(moved);
   Eigen::Matrix3Xd moved_gradient(3, x.cols());
   const double moved_value = system.value(moved).value;
   system.gradient(moved, moved_gradient);

@@ -40,13 +40,24 @@ Largest largest_free_component(const System& system, const Eigen::Matrix3Xd& fie
   return largest;
 }
 
+// The same over all vertices that move.
+Largest largest_motion(const System& system, const Eigen::Matrix3Xd& direction) {
+  Largest largest;
+  for (int v = 0; v < system.vertices(); ++v) {
+    if (!system.moves(v)) continue;
+    const double size = direction.col(v).cwiseAbs().maxCoeff();
+    if (!(size <= largest.value)) largest = {size, v};
+  }
+  return largest;
+}
+
 // Any component of the next Newton step p = -H^-1 g is at most this, in m, because H >= diag(curvature):
 // |p_i| <= sqrt(H^-1_ii) sqrt(g' H^-1 g).
 double step_bound(const System& system, const Eigen::Matrix3Xd& gradient, const Eigen::VectorXd& curvature) {
   double sum = 0, least = std::numeric_limits<double>::infinity();
   for (int v = 0; v < system.vertices(); ++v) {
-    if (system.block_of(v) < 0) continue;
-    sum += gradient.col(v).squaredNorm() / curvature[v];
+    if (!system.moves(v)) continue;
+    if (system.block_of(v) >= 0) sum += gradient.col(v).squaredNorm() / curvature[v];
     least = std::min(least, curvature[v]);
   }
   return sum == 0 ? 0 : std::sqrt(sum / least);
@@ -78,7 +89,7 @@ NewtonResult Newton::minimise(System& system, Eigen::Matrix3Xd& x, const NewtonO
 
   while (true) {
     if (result.iterations == options.max_iterations) {
-      const Largest worst = largest_free_component(system, direction_);
+      const Largest worst = largest_motion(system, direction_);
       result.reason = fmt::format(
           "{} Newton iterations did not reach the tolerance of {:.3g} m/s: the last step is {:.3g} m/s at vertex {}",
           result.iterations, options.tolerance, result.step_speed, worst.vertex);
@@ -89,7 +100,7 @@ NewtonResult Newton::minimise(System& system, Eigen::Matrix3Xd& x, const NewtonO
     evaluate_hessian(system, x, options, result);
     const double slope = find_direction(system, x, options, result);
     if (!result.reason.empty()) return result;
-    result.step_speed = largest_free_component(system, direction_).value / options.dt;
+    result.step_speed = largest_motion(system, direction_).value / options.dt;
     if (result.iterations == 0) result.first_step_speed = result.step_speed;
 
     const double used = blend_;
@@ -171,7 +182,7 @@ bool Newton::finishes_with_same_factor(System& system, Eigen::Matrix3Xd& x, cons
                                        Contact* contact, NewtonResult& result) {
   const std::optional<double> slope = solve_direction(system, result);
   if (!slope) return false;
-  const double speed = largest_free_component(system, direction_).value / options.dt;
+  const double speed = largest_motion(system, direction_).value / options.dt;
   if (speed > same_factor_margin * options.tolerance) return false;
   if (contact) {
     const Stopwatch watch(result.seconds.contact);
@@ -249,6 +260,7 @@ std::optional<double> Newton::solve_direction(System& system, NewtonResult& resu
   for (int v = 0; v < system.vertices(); ++v) {
     if (const int block = system.block_of(v); block >= 0) direction_.col(v) = step_.segment<3>(3 * block);
   }
+  system.carriers().place(direction_);
   return slope;
 }
 
@@ -307,7 +319,7 @@ void Newton::refuse_standstill(const System& system, const Eigen::Matrix3Xd& x, 
 void Newton::give_up_line_search(System& system, const Eigen::Matrix3Xd& x, Contact* contact, bool is_last,
                                  NewtonResult& result) {
   if (contact) contact->set_active(x);
-  const Largest worst = largest_free_component(system, direction_);
+  const Largest worst = largest_motion(system, direction_);
   if (trial_.at_rounding) {
     const Rounding rounding = measure_rounding(system, x, result.evaluation, gradient_);
     result.at_rounding = is_last || result.residual <= rounding_gradients * rounding.gradient;

@@ -50,6 +50,7 @@ void add(NewtonSeconds& sum, const NewtonSeconds& part) {
 
 TimeStepper::TimeStepper(System& system, Eigen::VectorXd mass, Contact* contact, StepOptions options, Script script)
     : system_(&system), mass_(std::move(mass)), contact_(contact), options_(options), script_(std::move(script)) {
+  resisting_mass_ = system.carriers().resisting_mass(mass_);
   const auto positive = [](const char* name, double value, const char* unit) {
     if (!(value > 0) || !std::isfinite(value)) {
       throw InputError(fmt::format("{} is {:g} {}; it must be above 0", name, value, unit));
@@ -84,7 +85,7 @@ StepRecord TimeStepper::step(State& state) {
 Eigen::Matrix3Xd TimeStepper::predict(const State& state) const {
   Eigen::Matrix3Xd xhat = state.x + options_.dt * state.v;
   for (int v = 0; v < system_->vertices(); ++v) {
-    if (system_->block_of(v) < 0) xhat.col(v) = state.x.col(v);
+    if (!system_->moves(v)) xhat.col(v) = state.x.col(v);
   }
   return xhat;
 }
@@ -117,7 +118,7 @@ NewtonResult TimeStepper::solve(const State& state, Eigen::Matrix3Xd& x, StepRec
   newton.max_iterations = options_.max_iterations;
   newton.projection = options_.projection;
   newton.on_demand = options_.project_on_demand;
-  newton.curvature = mass_ / (options_.dt * options_.dt);
+  newton.curvature = resisting_mass_ / (options_.dt * options_.dt);
   if (!script_.empty()) {
     goal_ = state.x;
     script_.place(state.time + options_.dt, goal_);
@@ -166,6 +167,7 @@ ContactForces TimeStepper::forces(const Eigen::Matrix3Xd& x) {
 void TimeStepper::advance(State& state, const Eigen::Matrix3Xd& x) const {
   state.v = (x - state.x) / options_.dt;
   state.x = x;
+  system_->carriers().place(state.x);  // free of the rounding that the iterations added up
   state.step += 1;
   state.time += options_.dt;
 }

@@ -84,7 +84,7 @@ struct StepRecord {
 
 class TimeStepper {
  public:
-  // The system with all its potentials, inertia among them; mass: kg, per vertex; `contact` may be null. System and
+  // The system with all its potentials, inertia among them; mass: kg, per vertex, 0 where it is carried; `contact` may be null. System and
   // contact must outlive this. The vertices of `script` are fixed in the system and follow it. Throws InputError for a
   // dt or tolerance that is not positive.
   TimeStepper(System& system, Eigen::VectorXd mass, Contact* contact, StepOptions options, Script script = {});
@@ -110,6 +110,7 @@ class TimeStepper {
 
   System* system_;
   Eigen::VectorXd mass_;
+  Eigen::VectorXd resisting_mass_;  // kg: of carried vertices too, what resists the motion of one alone
   Contact* contact_;
   StepOptions options_;
   Script script_;
