@@ -22,21 +22,34 @@ PairKey key_of(int high, int low) {
 int high_of(PairKey key) { return static_cast<int>(key >> 32); }
 int low_of(PairKey key) { return static_cast<int>(key & 0xffffffffU); }
 
-// Adds `scale` times a block, column by column.
-void add_scaled(const double* block, double scale, double* place, int stride) {
-  for (int c = 0; c < 3; ++c, block += 3, place += stride) {
-    for (int r = 0; r < 3; ++r) place[r] += scale * block[r];
+// Blocks are columns of four, of which the last is zero.
+constexpr size_t kBlock = lanes::kSumDoubles;
+
+void add_scaled(const double* block, double scale, double* to) {
+  for (size_t i = 0; i < kBlock; ++i) to[i] += scale * block[i];
+}
+
+void transpose(const double* block, double* to) {
+  for (size_t c = 0; c < 3; ++c) {
+    for (size_t r = 0; r < 3; ++r) to[4 * r + c] = block[4 * c + r];
+    to[4 * c + 3] = 0;
   }
 }
 
-struct Turnable {
-  double as_it_is[9], turned[9];
-  explicit Turnable(const double* block) {
-    for (int c = 0; c < 3; ++c) {
-      for (int r = 0; r < 3; ++r) as_it_is[3 * c + r] = turned[3 * r + c] = block[3 * c + r];
-    }
-  }
-};
+void start_blocks(AlignedVector<double>& room, size_t blocks) {
+  if (room.size() < kBlock * blocks) room.resize(kBlock * blocks, 0.0);
+  std::fill_n(room.begin(), kBlock * blocks, 0.0);
+}
+
+std::vector<PairKey> each_once(std::vector<PairKey> keys) {
+  std::sort(keys.begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  return keys;
+}
+
+size_t place_in(const std::vector<PairKey>& sorted, PairKey key) {
+  return static_cast<size_t>(std::lower_bound(sorted.begin(), sorted.end(), key) - sorted.begin());
+}
 
 }  // namespace
 
@@ -107,55 +120,121 @@ void System::Impl::number_vertices() {
 
 // From `count` pairs of numbers in room.row and room.column to the matrix blocks that they become.
 void SystemTerm::carry_pairs(const SystemRoom& room, int count, const SystemNumbers& numbers, SystemChunk& part) {
-  std::vector<PairKey> together;  // first blocks of pairs, once each
-  std::vector<int> sizes;
   const auto pairs = static_cast<size_t>(count);
   part.pairs.resize(pairs);
-  std::vector<PairKey> keys(pairs);
+  std::vector<PairKey> halves(pairs);
   for (size_t i = 0; i < pairs; ++i) {
-    const VertexBlocks u = numbers.blocks_of(room.row[i]), v = numbers.blocks_of(room.column[i]);
+    const int row = room.row[i], column = room.column[i];
+    const VertexBlocks u = numbers.blocks_of(row), v = numbers.blocks_of(column);
     const bool turned = u.first < v.first;
-    const VertexBlocks &high = turned ? v : u, &low = turned ? u : v;
-    part.pairs[i] = {
-        0,          high.count, low.count, turned, high.first == low.first, room.row[i] == room.column[i], high.weights,
-        low.weights};
-    keys[i] = key_of(high.first, low.first);
+    const VertexBlocks& low = turned ? u : v;
+    part.pairs[i] = {0, low.count, turned, low.weights};
+    // Of one vertex with itself, what is added to its transpose is a half.
+    if (row == column && low.count > 1) {
+      for (double& weight : part.pairs[i].weights) weight /= 2;
+    }
+    halves[i] = key_of(turned ? column : row, low.first);
   }
-  together = keys;
-  std::sort(together.begin(), together.end());
-  together.erase(std::unique(together.begin(), together.end()), together.end());
+  const std::vector<PairKey> half_keys = each_once(halves);
+  part.halves.resize(half_keys.size());
+  std::vector<PairKey> wholes(half_keys.size());
+  for (size_t h = 0, from = 0; h < half_keys.size(); ++h) {
+    const VertexBlocks high = numbers.blocks_of(high_of(half_keys[h]));
+    const int low = low_of(half_keys[h]), columns = numbers.blocks_of(low).count;
+    part.halves[h] = {static_cast<int>(from), 0, high.count, columns, high.weights};
+    wholes[h] = key_of(high.first, low);
+    from += static_cast<size_t>(columns);
+  }
+  for (size_t i = 0; i < pairs; ++i) part.pairs[i].half = part.halves[place_in(half_keys, halves[i])].from;
 
-  // Their matrix blocks, by column and then row, and where each is in that order.
-  std::vector<int> first(together.size());
-  std::vector<PairKey> blocks;
-  for (size_t i = 0; i < pairs; ++i) {
-    const auto at = std::lower_bound(together.begin(), together.end(), keys[i]) - together.begin();
-    part.pairs[i].first = static_cast<int>(at);
-    first[static_cast<size_t>(at)] = static_cast<int>(i);
+  const std::vector<PairKey> whole_keys = each_once(wholes);
+  part.wholes.resize(whole_keys.size());
+  for (size_t h = 0; h < half_keys.size(); ++h) {
+    const CarriedHalf& half = part.halves[h];
+    const size_t w = place_in(whole_keys, wholes[h]);
+    part.halves[h].whole = static_cast<int>(w);
+    part.wholes[w] = {0, half.rows, half.columns, high_of(whole_keys[w]) == low_of(whole_keys[w]) && half.rows > 1, 0};
   }
-  for (size_t k = 0; k < together.size(); ++k) {
-    const CarriedPair& pair = part.pairs[static_cast<size_t>(first[k])];
-    first[k] = static_cast<int>(blocks.size());
-    for (int a = 0; a < pair.rows; ++a) {
-      for (int b = 0; b < (pair.triangle ? a + 1 : pair.columns); ++b) {
-        blocks.push_back(key_of(low_of(together[k]) + b, high_of(together[k]) + a));
+  // The matrix blocks, by column and then row, and where each is in that order.
+  std::vector<PairKey> blocks;
+  int from = 0;
+  for (size_t w = 0; w < whole_keys.size(); ++w) {
+    CarriedWhole& whole = part.wholes[w];
+    whole.from = from;
+    whole.places = static_cast<int>(blocks.size());
+    from += whole.rows * whole.columns;
+    for (int a = 0; a < whole.rows; ++a) {
+      for (int b = 0; b < (whole.symmetric ? a + 1 : whole.columns); ++b) {
+        blocks.push_back(key_of(low_of(whole_keys[w]) + b, high_of(whole_keys[w]) + a));
       }
     }
   }
-  for (CarriedPair& pair : part.pairs) pair.first = first[static_cast<size_t>(pair.first)];
-  std::vector<PairKey> sorted = blocks;
-  std::sort(sorted.begin(), sorted.end());
-  part.places.resize(blocks.size());
-  for (size_t k = 0; k < blocks.size(); ++k) {
-    part.places[k] = static_cast<int>(std::lower_bound(sorted.begin(), sorted.end(), blocks[k]) - sorted.begin());
-  }
+  for (CarriedHalf& half : part.halves) half.whole = part.wholes[static_cast<size_t>(half.whole)].from;
+  const std::vector<PairKey> sorted = each_once(blocks);
+  part.places.clear();
   part.row.clear();
   part.column.clear();
+  for (const PairKey block : blocks) part.places.push_back(static_cast<int>(place_in(sorted, block)));
   for (const PairKey block : sorted) {
     part.row.push_back(low_of(block));
     part.column.push_back(high_of(block));
   }
 }
+
+namespace {
+
+// J^T H J of what is in room.pairs, to the values of the matrix.
+void carry(const SystemChunk& part, SystemRoom& room, double* values) {
+  double turned[kBlock];
+  const CarriedHalf& last_half = part.halves.back();
+  start_blocks(room.halves, static_cast<size_t>(last_half.from + last_half.columns));
+  const double* block = room.pairs.data();
+  for (const CarriedPair& pair : part.pairs) {
+    if (pair.turned) transpose(block, turned);
+    double* to = room.halves.data() + kBlock * static_cast<size_t>(pair.half);
+    for (int b = 0; b < pair.columns; ++b, to += kBlock) {
+      add_scaled(pair.turned ? turned : block, pair.weights[static_cast<size_t>(b)], to);
+    }
+    block += kBlock;
+  }
+  const CarriedWhole& last = part.wholes.back();
+  start_blocks(room.wholes, static_cast<size_t>(last.from + last.rows * last.columns));
+  for (const CarriedHalf& half : part.halves) {
+    double* to = room.wholes.data() + kBlock * static_cast<size_t>(half.whole);
+    for (int a = 0; a < half.rows; ++a) {
+      const double* from = room.halves.data() + kBlock * static_cast<size_t>(half.from);
+      for (int b = 0; b < half.columns; ++b, from += kBlock, to += kBlock) {
+        add_scaled(from, half.weights[static_cast<size_t>(a)], to);
+      }
+    }
+  }
+  const auto add_to_matrix = [&](const double* from, int place) {
+    const auto k = static_cast<size_t>(place);
+    const bool stored = part.stride[k] < 0;
+    double* to = values + part.offset[k];
+    for (int c = 0; c < 3; ++c, from += 4, to += std::abs(part.stride[k])) {
+      for (int r = 0; r < 3; ++r) to[r] = (stored ? 0 : to[r]) + from[r];
+    }
+  };
+  for (const CarriedWhole& whole : part.wholes) {
+    const double* const blocks = room.wholes.data() + kBlock * static_cast<size_t>(whole.from);
+    const int* place = part.places.data() + whole.places;
+    for (int a = 0; a < whole.rows; ++a) {
+      for (int b = 0; b < (whole.symmetric ? a + 1 : whole.columns); ++b, ++place) {
+        const double* const here = blocks + kBlock * static_cast<size_t>(a * whole.columns + b);
+        if (!whole.symmetric) {
+          add_to_matrix(here, *place);
+          continue;
+        }
+        transpose(blocks + kBlock * static_cast<size_t>(b * whole.columns + a), turned);
+        add_scaled(here, 1, turned);
+        add_to_matrix(turned, *place);
+      }
+    }
+  }
+}
+
+}  // namespace
 
 void System::Impl::add_chunk(SystemTerm& term, int chunk, Projection projection, SystemRoom& room, double* gradients,
                              double* values, lanes::ChunkResult* result) {
@@ -163,33 +242,9 @@ void System::Impl::add_chunk(SystemTerm& term, int chunk, Projection projection,
   const bool direct = part.pairs.empty();
   const lanes::ChunkBlocks pairs{static_cast<int>(part.pairs.size()), pair_offset.data(), pair_stride.data()};
   term.operations->hessian(term.stencils, term.range(chunk), direct ? term.blocks(chunk) : pairs, points_of(term),
-                           static_cast<int>(projection), room.view(), gradients,
-                           direct ? values : room.pair_blocks.data(), result);
-  if (direct) return;
-  for (size_t k = 0; k < part.row.size(); ++k) {
-    if (part.stride[k] >= 0) continue;
-    for (int c = 0; c < 3; ++c)
-      std::fill_n(values + part.offset[k] - static_cast<ptrdiff_t>(c) * part.stride[k], 3, 0.0);
-  }
-  for (size_t i = 0; i < part.pairs.size(); ++i) {
-    const CarriedPair& pair = part.pairs[i];
-    const Turnable block(room.pair_blocks.data() + 9 * i);
-    const double* const straight = pair.turned ? block.turned : block.as_it_is;
-    const double* const other = pair.turned ? block.as_it_is : block.turned;
-    const int* place = part.places.data() + pair.first;
-    for (size_t a = 0; a < static_cast<size_t>(pair.rows); ++a) {
-      const size_t columns = pair.triangle ? a + 1 : static_cast<size_t>(pair.columns);
-      for (size_t b = 0; b < columns; ++b, ++place) {
-        const auto k = static_cast<size_t>(*place);
-        double* const to = values + part.offset[k];
-        const int stride = std::abs(part.stride[k]);
-        add_scaled(straight, pair.row_weights[a] * pair.column_weights[b], to, stride);
-        // Of two vertices of one body the matrix has both H and its transpose.
-        if (pair.triangle && !pair.diagonal)
-          add_scaled(other, pair.column_weights[a] * pair.row_weights[b], to, stride);
-      }
-    }
-  }
+                           static_cast<int>(projection), room.view(), gradients, direct ? values : room.pairs.data(),
+                           result);
+  if (!direct) carry(part, room, values);
 }
 
 double System::stiffness_at(int vertex, const BlockMatrix& matrix) const {

@@ -40,20 +40,31 @@ struct SystemNumbers {
   VertexBlocks blocks_of(int number) const;
 };
 
-// The sum of a chunk's blocks of one pair of vertices, on its way to those of the matrix: J^T H J.
-struct CarriedPair {
-  int first = 0;  // into SystemChunk::places: rows*columns of them, or those with column <= row
+// The way of a chunk's Hessian from pairs of vertices to the matrix, J^T H J, of which sums over the vertices of a body
+// are taken first on the one side, then on the other. All counts are in blocks of kSumDoubles.
+struct CarriedPair {  // a sum over stencils, of two vertices
+  int half = 0;       // where it goes to: `columns` blocks
+  int columns = 1;
+  bool turned = false;  // its transpose
+  std::array<double, 4> weights{};
+};
+struct CarriedHalf {  // of a vertex and a body
+  int from = 0;
+  int whole = 0;  // rows*columns blocks
   int rows = 1, columns = 1;
-  bool turned = false;    // the rows are those of the second vertex
-  bool triangle = false;  // both are of one body
-  bool diagonal = false;  // both are one vertex
-  std::array<double, 4> row_weights{}, column_weights{};
+  std::array<double, 4> weights{};
+};
+struct CarriedWhole {  // of two bodies, or of one: then half of it, to which the transpose is added
+  int from = 0;
+  int rows = 1, columns = 1;
+  bool symmetric = false;
+  int places = 0;  // into SystemChunk::places: of all blocks, or of those with column <= row
 };
 
 // Room of one thread.
 struct SystemRoom {
   AlignedVector<double> sums;
-  AlignedVector<double> pair_blocks;  // 9 for each pair of vertices of a chunk
+  AlignedVector<double> pairs, halves, wholes;  // blocks on the way of carried vertices
   AlignedVector<double> scratch;
   std::vector<int> place;  // per vertex of the system
   std::vector<int> block, places, rank, row, column;
@@ -69,6 +80,8 @@ struct SystemChunk {
   std::vector<int> offset, stride;  // lanes::ChunkBlocks
   // Where it has carried vertices, else empty: what is summed is the blocks of pairs of vertices.
   std::vector<CarriedPair> pairs;
+  std::vector<CarriedHalf> halves;
+  std::vector<CarriedWhole> wholes;
   std::vector<int> places;  // into row and column
   size_t sums() const { return pairs.empty() ? row.size() : pairs.size(); }
 };
@@ -169,7 +182,7 @@ struct System::Impl {
   std::vector<RestConfiguration> configurations;
   AlignedVector<double> gradient;             // 4 per vertex
   std::vector<SystemRoom> rooms;              // per thread
-  std::vector<int> pair_offset, pair_stride;  // lanes::ChunkBlocks of SystemRoom::pair_blocks
+  std::vector<int> pair_offset, pair_stride;  // lanes::ChunkBlocks of SystemRoom::pairs
   std::vector<unsigned long long> taken;      // per vertex: room of the colouring
 
   // Brings prepared data up to date, and the colouring where it is `coloured`.

@@ -128,12 +128,12 @@ void System::Impl::size_rooms() {
     const size_t sums = (blocks + 1) * lanes::kSumDoubles;
     if (room.sums.size() < sums) room.sums.resize(sums, 0.0);
     if (room.scratch.size() < scratch) room.scratch.resize(scratch);
-    if (numbers.carriers.empty()) continue;
-    if (room.pair_blocks.size() < 9 * blocks) room.pair_blocks.resize(9 * blocks);
+    const size_t pairs = lanes::kSumDoubles * blocks;
+    if (!numbers.carriers.empty() && room.pairs.size() < pairs) room.pairs.resize(pairs, 0.0);
   }
   for (size_t k = pair_offset.size(); k < blocks && !numbers.carriers.empty(); ++k) {
-    pair_offset.push_back(static_cast<int>(9 * k));
-    pair_stride.push_back(-3);
+    pair_offset.push_back(static_cast<int>(lanes::kSumDoubles * k));
+    pair_stride.push_back(-4);
   }
 }
 

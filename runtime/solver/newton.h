@@ -39,8 +39,9 @@ struct NewtonOptions {
   double sufficient_decrease = 1e-4;  // of the decrease that the gradient predicts
   int max_halvings = 60;
   // N/m, per vertex of the system: a lower bound of the Hessian's eigenvalues there (mass/dt^2; of a carried vertex, of
-  // what resists its motion alone). It bounds the next Newton step without solving for it, which saves the last factorisation. Empty: not used. Only Hessians
-  // that are projected have such a bound: it is not asked while they are left as they are.
+  // what resists its motion alone). It bounds the next Newton step without solving for it, which saves the last
+  // factorisation. Empty: not used. Only Hessians that are projected have such a bound: it is not asked while they are
+  // left as they are.
   Eigen::VectorXd curvature;
   // First brought to their goal, as far at a time as contact lets them; the others follow to first order.
   Prescribed prescribed;

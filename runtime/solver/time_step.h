@@ -84,9 +84,9 @@ struct StepRecord {
 
 class TimeStepper {
  public:
-  // The system with all its potentials, inertia among them; mass: kg, per vertex, 0 where it is carried; `contact` may be null. System and
-  // contact must outlive this. The vertices of `script` are fixed in the system and follow it. Throws InputError for a
-  // dt or tolerance that is not positive.
+  // The system with all its potentials, inertia among them; mass: kg, per vertex, 0 where it is carried; `contact` may
+  // be null. System and contact must outlive this. The vertices of `script` are fixed in the system and follow it.
+  // Throws InputError for a dt or tolerance that is not positive.
   TimeStepper(System& system, Eigen::VectorXd mass, Contact* contact, StepOptions options, Script script = {});
 
   StepRecord step(State& state);
