@@ -74,7 +74,7 @@ class ChartDrawing {
   std::string text() {
     axes();
     for (size_t i = 0; i < chart_.lines.size(); ++i) line(chart_.lines[i], color_of(i));
-    if (chart_.lines.size() > 1 || !chart_.lines.front().label.empty()) legend();
+    if (chart_.lines.size() > 1) legend();
     return std::move(out_);
   }
 

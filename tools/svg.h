@@ -21,8 +21,9 @@ struct Chart {
   bool log_x = false, log_y = false;
 };
 
-// An <svg> element of all charts in a row under one title (none where it is ""). Numbers on an axis that are very large
-// or small are shown by a power of ten beside the label.
+// An <svg> element of all charts in a row under one title (none where it is ""). A legend where a chart has several
+// lines; every line carries its label as its <title>. Numbers on an axis that are very large or small are shown by a
+// power of ten beside the label.
 std::string svg_of(const std::vector<Chart>& charts, const std::string& title = "");
 
 // &, <, >, " and ' as entities; characters that XML does not have are left out.

@@ -48,7 +48,7 @@ void expect_found_again(const std::string& law, const Data& data, const std::str
   EXPECT_LT(derivative_error(energy, points, data), 1e-6) << law;
 }
 
-TEST(Fit, FindsTheParamsOfAKnownLawAgain) {
+TEST(SlowFit, FindsTheParamsOfAKnownLawAgain) {
   expect_found_again("mooney_rivlin", {{"C10", {3e5}}, {"C01", {4e4}}, {"K", {2e7}}}, "");
   expect_found_again("yeoh", {{"C1", {2e5}}, {"C2", {-3e3}}, {"C3", {1e2}}, {"K", {1e7}}}, "");
   expect_found_again("gent", {{"mu", {4e5}}, {"Jm", {60}}, {"K", {1e8}}}, "K");
@@ -56,7 +56,7 @@ TEST(Fit, FindsTheParamsOfAKnownLawAgain) {
   expect_found_again("fung", {{"mu", {1e4}}, {"b", {0.3}}, {"K", {1e6}}}, "");
 }
 
-TEST(Fit, NamesWhatTheDataDoesNotDetermine) {
+TEST(SlowFit, NamesWhatTheDataDoesNotDetermine) {
   const Energy& energy = test::shipped("mooney_rivlin");
   const Data data = {{"C10", {3e5}}, {"C01", {4e4}}, {"K", {1e10}}};
   auto open = [&](const std::vector<std::string>& modes, const Data& given) {
@@ -87,7 +87,9 @@ class FitCommand : public CommandTest {
   }
 };
 
-TEST_F(FitCommand, FollowsTreloarsRubber) {
+class SlowFitCommand : public FitCommand {};
+
+TEST_F(SlowFitCommand, FollowsTreloarsRubber) {
   // Root mean square of the stress over all three tests, of up to 6.3 MPa.
   const nlohmann::json mooney = json("mooney_rivlin " + treloar + " --set K=1GPa");
   EXPECT_EQ(mooney["points"], 53);
