@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
+#include <utility>
 
 #include "runtime/error.h"
 #include "runtime/system_data.h"
@@ -25,8 +26,12 @@ int low_of(PairKey key) { return static_cast<int>(key & 0xffffffffU); }
 // Blocks are columns of four, of which the last is zero.
 constexpr size_t kBlock = lanes::kSumDoubles;
 
-void add_scaled(const double* block, double scale, double* to) {
-  for (size_t i = 0; i < kBlock; ++i) to[i] += scale * block[i];
+typedef double Two __attribute__((vector_size(16)));  // a column is two of them, aligned
+
+void put_scaled(const double* block, double scale, double* to, bool stored) {
+  const Two* from = reinterpret_cast<const Two*>(block);
+  Two* place = reinterpret_cast<Two*>(to);
+  for (size_t i = 0; i < kBlock / 2; ++i) place[i] = stored ? scale * from[i] : place[i] + scale * from[i];
 }
 
 void transpose(const double* block, double* to) {
@@ -36,9 +41,9 @@ void transpose(const double* block, double* to) {
   }
 }
 
-void start_blocks(AlignedVector<double>& room, size_t blocks) {
-  if (room.size() < kBlock * blocks) room.resize(kBlock * blocks, 0.0);
-  std::fill_n(room.begin(), kBlock * blocks, 0.0);
+void make_room(AlignedVector<double>& room, int blocks) {
+  const size_t size = kBlock * static_cast<size_t>(blocks);
+  if (room.size() < size) room.resize(size, 0.0);
 }
 
 std::vector<PairKey> each_once(std::vector<PairKey> keys) {
@@ -128,7 +133,7 @@ void SystemTerm::carry_pairs(const SystemRoom& room, int count, const SystemNumb
     const VertexBlocks u = numbers.blocks_of(row), v = numbers.blocks_of(column);
     const bool turned = u.first < v.first;
     const VertexBlocks& low = turned ? u : v;
-    part.pairs[i] = {0, low.count, turned, low.weights};
+    part.pairs[i] = {0, low.count, turned, false, low.weights};
     // Of one vertex with itself, what is added to its transpose is a half.
     if (row == column && low.count > 1) {
       for (double& weight : part.pairs[i].weights) weight /= 2;
@@ -141,18 +146,25 @@ void SystemTerm::carry_pairs(const SystemRoom& room, int count, const SystemNumb
   for (size_t h = 0, from = 0; h < half_keys.size(); ++h) {
     const VertexBlocks high = numbers.blocks_of(high_of(half_keys[h]));
     const int low = low_of(half_keys[h]), columns = numbers.blocks_of(low).count;
-    part.halves[h] = {static_cast<int>(from), 0, high.count, columns, high.weights};
+    part.halves[h] = {static_cast<int>(from), 0, high.count, columns, false, high.weights};
     wholes[h] = key_of(high.first, low);
     from += static_cast<size_t>(columns);
   }
-  for (size_t i = 0; i < pairs; ++i) part.pairs[i].half = part.halves[place_in(half_keys, halves[i])].from;
+  std::vector<char> reached(half_keys.size(), 0);
+  for (size_t i = 0; i < pairs; ++i) {
+    const size_t h = place_in(half_keys, halves[i]);
+    part.pairs[i].half = part.halves[h].from;
+    part.pairs[i].stored = std::exchange(reached[h], char{1}) == 0;
+  }
 
   const std::vector<PairKey> whole_keys = each_once(wholes);
   part.wholes.resize(whole_keys.size());
+  reached.assign(whole_keys.size(), 0);
   for (size_t h = 0; h < half_keys.size(); ++h) {
     const CarriedHalf& half = part.halves[h];
     const size_t w = place_in(whole_keys, wholes[h]);
     part.halves[h].whole = static_cast<int>(w);
+    part.halves[h].stored = std::exchange(reached[w], char{1}) == 0;
     part.wholes[w] = {0, half.rows, half.columns, high_of(whole_keys[w]) == low_of(whole_keys[w]) && half.rows > 1, 0};
   }
   // The matrix blocks, by column and then row, and where each is in that order.
@@ -185,26 +197,25 @@ namespace {
 
 // J^T H J of what is in room.pairs, to the values of the matrix.
 void carry(const SystemChunk& part, SystemRoom& room, double* values) {
-  double turned[kBlock];
-  const CarriedHalf& last_half = part.halves.back();
-  start_blocks(room.halves, static_cast<size_t>(last_half.from + last_half.columns));
+  alignas(Two) double turned[kBlock];
+  make_room(room.halves, part.halves.back().from + part.halves.back().columns);
   const double* block = room.pairs.data();
   for (const CarriedPair& pair : part.pairs) {
     if (pair.turned) transpose(block, turned);
     double* to = room.halves.data() + kBlock * static_cast<size_t>(pair.half);
     for (int b = 0; b < pair.columns; ++b, to += kBlock) {
-      add_scaled(pair.turned ? turned : block, pair.weights[static_cast<size_t>(b)], to);
+      put_scaled(pair.turned ? turned : block, pair.weights[static_cast<size_t>(b)], to, pair.stored);
     }
     block += kBlock;
   }
   const CarriedWhole& last = part.wholes.back();
-  start_blocks(room.wholes, static_cast<size_t>(last.from + last.rows * last.columns));
+  make_room(room.wholes, last.from + last.rows * last.columns);
   for (const CarriedHalf& half : part.halves) {
     double* to = room.wholes.data() + kBlock * static_cast<size_t>(half.whole);
     for (int a = 0; a < half.rows; ++a) {
       const double* from = room.halves.data() + kBlock * static_cast<size_t>(half.from);
       for (int b = 0; b < half.columns; ++b, from += kBlock, to += kBlock) {
-        add_scaled(from, half.weights[static_cast<size_t>(a)], to);
+        put_scaled(from, half.weights[static_cast<size_t>(a)], to, half.stored);
       }
     }
   }
@@ -227,7 +238,7 @@ void carry(const SystemChunk& part, SystemRoom& room, double* values) {
           continue;
         }
         transpose(blocks + kBlock * static_cast<size_t>(b * whole.columns + a), turned);
-        add_scaled(here, 1, turned);
+        put_scaled(here, 1, turned, false);
         add_to_matrix(turned, *place);
       }
     }

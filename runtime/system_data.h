@@ -46,12 +46,14 @@ struct CarriedPair {  // a sum over stencils, of two vertices
   int half = 0;       // where it goes to: `columns` blocks
   int columns = 1;
   bool turned = false;  // its transpose
+  bool stored = false;  // not added: the first that goes there
   std::array<double, 4> weights{};
 };
 struct CarriedHalf {  // of a vertex and a body
   int from = 0;
   int whole = 0;  // rows*columns blocks
   int rows = 1, columns = 1;
+  bool stored = false;
   std::array<double, 4> weights{};
 };
 struct CarriedWhole {  // of two bodies, or of one: then half of it, to which the transpose is added

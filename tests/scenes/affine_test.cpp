@@ -154,6 +154,21 @@ TEST(Affine, BodiesThatAreHeldHaveNoDegreesOfFreedom) {
   EXPECT_EQ(built.system->block_of(8), -1);
 }
 
+TEST(Affine, AScriptedBodyPushesAffineAndSoftOnes) {
+  const Outcome run = run_text(
+      settings("[0, 0, -9.81]", 0.01, 40) + "[contact]\n[[ground]]\n" +
+      box("pusher", "translate = [0, 0, 0.01]\nscripted = [{ key = [{ time = 0.4, translate = [0.2, 0, 0] }] }]\n") +
+      box("pushed", "translate = [0.11, 0, 0.001]\n") +
+      "[[object]]\nname = \"soft\"\nbox = { size = [0.1, 0.1, 0.1], cells = [2, 2, 2] }\n"
+      "translate = [0.23, 0, 0.001]\ndensity = 1000\n[[object.energy]]\nlaw = \"stable_neo_hookean\"\nE = 1e5\n"
+      "nu = 0.3\n");
+  ASSERT_EQ(run.summary.failure, "");
+  const std::vector<Body>& bodies = run.built.bodies;
+  EXPECT_NEAR(mean(run.end.x, bodies[0])[0], 0.05 + 0.2, 1e-9);
+  EXPECT_GT(mean(run.end.x, bodies[1])[0], mean(run.end.x, bodies[0])[0] + 0.1);
+  EXPECT_GT(mean(run.end.x, bodies[2])[0], mean(run.end.x, bodies[1])[0] + 0.09);
+}
+
 TEST(Affine, BodiesThatAreAlikeAreOnePotential) {
   const BuiltScene built = build_text(settings("[0, 0, -9.81]", 0.01, 1) + box("a", "translate = [0.3, 0, 0]\n") +
                                       box("b", "rotate = [0.1, 0.2, 0.3]\ntranslate = [0, 0, 1]\n") +
