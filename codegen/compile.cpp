@@ -13,6 +13,7 @@
 #include "codegen/rest_form.h"
 #include "codegen/schedule.h"
 #include "codegen/structure.h"
+#include "symbolic/stretches.h"
 
 namespace ergon {
 namespace {
@@ -35,6 +36,9 @@ std::string note_of(const PreparedKernel& prepared) {
 }  // namespace
 
 Generated generate(const Energy& energy, const CompileOptions& options) {
+  // A density in principal stretches is taken for a symmetric function of them.
+  if (const auto fault = check_stretches(energy, options.case_name); fault && fault->severity == Severity::error)
+    throw SourceError(fault->place, fault->message + ", at " + fault->state);
   Generated out;
   auto pass = [&](const char* name, double& seconds, auto&& run) {
     auto start = std::chrono::steady_clock::now();

@@ -55,7 +55,8 @@ struct CompiledKernel {
   bool cached = false;
 };
 
-// `energy` must outlive the result's module. Throws SourceError for what cannot be compiled.
+// `energy` must outlive the result's module. Throws SourceError for what cannot be compiled, and for a density in
+// principal stretches that is not symmetric in them.
 Generated generate(const Energy& energy, const CompileOptions& options);
 
 // A kernel that a cache holds, loaded; else what building it takes.

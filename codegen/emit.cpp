@@ -146,13 +146,13 @@ std::string kernel_table(const Module& m, const OperationCounts& c, VectorType t
   out += fmt::format(
       "extern \"C\" __attribute__((visibility(\"default\"))) const ErgonKernel ergon_kernel = {{\n"
       "  ERGON_KERNEL_ABI, {}, {}, {}, {}, {}, {}, {}, {},\n  {}, inputs, {}, {}, {}, {}, {}, {},\n  {}, {}, {}, {},\n"
-      "  {}, {}, {}, {},\n  {}, {},\n  {}, {}, {}, {}, {}}};\n",
+      "  {}, {}, {}, {},\n  {}, {},\n  {}, {}, {}, {}, {}, {}}};\n",
       type.lanes, quoted(m.energy->name), quoted(m.case_name), quoted(m.energy->geometry), density ? 1 : 0, m.points,
       m.q_vectors, density ? "0" : "weights", inputs, m.params, m.raw, c.uniforms, c.elements, m.require.size(),
       m.active.size(), int{m.constant_gradient}, int{m.constant_hessian}, int{m.zero_hessian}, int{m.psd_hessian},
       c.value, c.gradient, c.hessian, c.divisions, type.single ? "0, 0, 0, 0, 0, 0" : entries, density ? "0" : "points",
       int{m.displacement}, principal && !type.single ? "principal_entry" : "0", c.principal,
-      projected && !type.single ? "projected_entry" : "0", type.single ? "&single" : "0");
+      projected && !type.single ? "projected_entry" : "0", type.single ? "&single" : "0", int{m.stretches});
   return out;
 }
 
@@ -162,7 +162,9 @@ std::string header(const Module& m, const OperationCounts& c, const std::vector<
              "// Cost per lane, as `ergon cost` tells it:\n{}"
              "// Kept: {} values per material, {} per element. q: {} components{}.\n//\n",
              m.energy->name, m.case_name.empty() ? "" : ", case " + m.case_name, cost_table(costs, "//   "), c.uniforms,
-             c.elements, m.q_size(), m.displacement ? ", those of F - I" : "") +
+             c.elements, m.q_size(),
+             m.stretches ? (m.displacement ? ", the stretches less 1" : ", the stretches")
+                         : (m.displacement ? ", those of F - I" : "")) +
          commented(m.energy->text) + "\n";
 }
 

@@ -56,6 +56,15 @@ NodeId GraphAlgebra::input(const Symbol& symbol, int component) {
                   : symbol.role != Role::dof ? Source::raw
                   : module_.points == 0      ? Source::q
                                              : Source::point;
+  if (source == Source::q && module_.stretches) {
+    const int axis = component / symbol.shape.rows;
+    if (component % symbol.shape.rows != axis) return graph_.constant(0);
+    NodeId q = graph_.input(Source::q, axis);
+    const NodeId s = module_.displacement ? graph_.sum(1, {{1, q}}) : q;
+    if (module_.displacement) graph_.set_name(q, "e" + std::to_string(axis));
+    graph_.set_name(s, "s" + std::to_string(axis));
+    return s;
+  }
   NodeId id = graph_.input(source, index);
   if (source == Source::q && module_.displacement) {
     graph_.set_name(id, component_name("G", symbol.shape, component));
@@ -64,6 +73,12 @@ NodeId GraphAlgebra::input(const Symbol& symbol, int component) {
   }
   graph_.set_name(id, name);
   return id;
+}
+
+std::vector<NodeId> GraphAlgebra::stretches(const Tensor<NodeId>& F) {
+  std::vector<NodeId> s;
+  for (int axis = 0; axis < F.shape.cols; ++axis) s.push_back(F(axis, axis));
+  return s;
 }
 
 NodeId GraphAlgebra::named(const std::string& let, int component, int size, NodeId value) {

@@ -6,6 +6,7 @@
 
 #include "codegen/module.h"
 #include "symbolic/functions.h"
+#include "symbolic/tensor.h"
 
 namespace ergon {
 
@@ -23,8 +24,9 @@ class GraphAlgebra {
   NodeId power(NodeId a, long num, long den) { return graph_.power(a, static_cast<int>(num), static_cast<int>(den)); }
   NodeId power(NodeId a, NodeId b) { return graph_.call(Call::pow, {a, b}); }
   NodeId call(Function f, const std::vector<NodeId>& arguments);
-  // F is I + q where the module is one of displacements.
+  // F is I + q where the module is one of displacements, and diag(s) where it is one of stretches.
   NodeId input(const Symbol& symbol, int component);
+  std::vector<NodeId> stretches(const Tensor<NodeId>& F);
   // Lets of parameters and rest or lag data alone become values of their own.
   NodeId named(const std::string& let, int component, int size, NodeId value);
 

@@ -5,6 +5,7 @@
 #include "codegen/graph_algebra.h"
 #include "codegen/rewrite.h"
 #include "symbolic/elaborate.h"
+#include "symbolic/stretches.h"
 
 namespace ergon {
 
@@ -33,6 +34,7 @@ Module empty_module(const Energy& energy, const std::string& case_name) {
   }
   module.points = density ? 0 : components / 3;
   module.q_vectors = components / 3;
+  module.stretches = density && uses_stretches(energy);
   return module;
 }
 

@@ -29,7 +29,10 @@ struct Module {
   // are empty.
   int q_vectors = 0;
   std::vector<double> weights;
-  int q_size() const { return 3 * q_vectors; }
+  // Set by lower(): a density in principal stretches. q is then the q_vectors singular values of F, or those less 1
+  // where `displacement` is set, and derivatives are with respect to these; F is diag(s).
+  bool stretches = false;
+  int q_size() const { return stretches ? q_vectors : 3 * q_vectors; }
 
   // Set by differentiate(): with respect to q; the lower triangle packed by rows.
   std::vector<NodeId> gradient;

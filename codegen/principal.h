@@ -2,7 +2,8 @@
 // Pass 6: the Hessian of an isotropic density in its principal frame. Establishes `principal` of the module: the blocks
 // of the Hessian at F = diag(s), from which the runtime forms and projects it at any F by a singular value
 // decomposition. They come from the differentiated graph by putting diag(s) into it, so no difference of singular
-// values is ever divided by.
+// values is ever divided by. Of a density in principal stretches, of which the graph knows derivatives by the stretches
+// alone, flips are divided differences by algebra (codegen/divided_difference.h).
 //
 // Blocks, in order, with g(s) the density at diag(s):
 //   solid (3x3 F)     stretch g_00 g_10 g_11 g_20 g_21 g_22; twist and flip of axes (1,2), (2,0), (0,1)
@@ -16,7 +17,8 @@
 
 namespace ergon {
 
-// Leaves `principal` empty for what is not isotropic (symbolic/isotropy.h) or needs no projection.
+// Leaves `principal` empty for what is not isotropic (symbolic/isotropy.h) or needs no projection. Throws SourceError
+// for a function of stretches of which no divided difference is known.
 void find_principal(Module& module);
 
 }  // namespace ergon

@@ -37,16 +37,23 @@ RestAlgebra::Scalar RestAlgebra::opaque(NodeId direct) {
 
 RestAlgebra::Scalar RestAlgebra::input(const Symbol& symbol, int component) {
   const NodeId node = graph_.input(symbol, component);
-  if (symbol.role != Role::dof) return fixed(node);
+  if (symbol.role != Role::dof || g_.is_constant(node)) return fixed(node);
   Part p;
   p.op = Op::input;
   p.direct = node;
   const bool diagonal = component % symbol.shape.rows == component / symbol.shape.rows;
+  if (module_.stretches) component /= symbol.shape.rows;
   p.c = g_.constant(diagonal ? 1 : 0);
   p.l.assign(static_cast<size_t>(module_.q_size()), g_.constant(0));
   p.l[static_cast<size_t>(component)] = g_.constant(1);
   p.d = g_.input(Source::q, component);
   return append(std::move(p));
+}
+
+std::vector<RestAlgebra::Scalar> RestAlgebra::stretches(const Tensor<Scalar>& F) {
+  std::vector<Scalar> s;
+  for (int axis = 0; axis < F.shape.cols; ++axis) s.push_back(F(axis, axis));
+  return s;
 }
 
 RestAlgebra::Scalar RestAlgebra::named(const std::string& let, int component, int size, Scalar a) {
@@ -139,7 +146,13 @@ RestAlgebra::Scalar RestAlgebra::power(Scalar a, long num, long den) {
 
 RestAlgebra::Scalar RestAlgebra::power(Scalar a, Scalar b) {
   const NodeId node = graph_.power(direct(a), direct(b));
-  return is_fixed(a) && is_fixed(b) ? fixed(node) : opaque(node);
+  if (is_fixed(a) && is_fixed(b)) return fixed(node);
+  if (!expands(a) || !is_fixed(b)) return opaque(node);
+  const Scalar logarithm = call(Function::log, {a});
+  const Scalar exponent = multiply(b, logarithm);
+  const Scalar made = call(Function::exp, {exponent});
+  if (expands(made)) at(made).direct = node;
+  return expands(made) ? made : opaque(node);
 }
 
 RestAlgebra::Scalar RestAlgebra::call(Function f, const std::vector<Scalar>& arguments) {

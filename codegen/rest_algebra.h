@@ -31,6 +31,7 @@ class RestAlgebra {
   Scalar power(Scalar a, Scalar b);
   Scalar call(Function f, const std::vector<Scalar>& arguments);
   Scalar input(const Symbol& symbol, int component);
+  std::vector<Scalar> stretches(const Tensor<Scalar>& F);
   Scalar named(const std::string& let, int component, int size, Scalar a);
 
   // The scalar as its author wrote it.

@@ -30,7 +30,7 @@ AtRest exactly_at_rest(const Energy& energy, const std::string& case_name) try {
   ExactInputs inputs;
   for (const Symbol* dof : energy.with_role(Role::dof)) inputs[dof->name] = undeformed(dof->shape);
   GinacAlgebra numbers(std::move(inputs));
-  JetAlgebra<GinacAlgebra> jets(energy, numbers);
+  JetAlgebra<GinacAlgebra> jets(energy, numbers, JetAlgebra<GinacAlgebra>::Order::first);
   const Jet<GiNaC::ex> at = elaborate(energy, case_name, jets).value;
   auto zero = [](const GiNaC::ex& e) { return e.is_zero() || e.normal().is_zero(); };
   return {zero(at.value), std::all_of(at.gradient.begin(), at.gradient.end(), zero)};
@@ -43,6 +43,7 @@ bool expand_about_rest(Module& module) {
   const Energy& energy = *module.energy;
   if (energy.kind != Energy::Kind::density || energy.geometry != "solid") return false;
   Module made = empty_module(energy, module.case_name);
+  if (made.stretches && energy.geometry != "solid") return false;  // the runtime knows s, not s - 1, of these
   made.displacement = true;
   RestAlgebra algebra(made);
   const Elaborated<int> parts = elaborate(energy, module.case_name, algebra);

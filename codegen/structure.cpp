@@ -31,6 +31,7 @@ bool is_nonnegative_diagonal(const Module& module) {
 
 void find_structure(Module& module) {
   const Graph& g = module.graph;
+  if (module.stretches) return;             // what holds with respect to the stretches need not hold with respect to F
   const bool two_forms = module.near >= 0;  // each alone depends on q in what it computes
   module.constant_gradient = !two_forms && !depends_on_q(g, module.gradient);
   module.constant_hessian = !two_forms && !depends_on_q(g, module.hessian);

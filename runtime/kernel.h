@@ -13,7 +13,7 @@
 extern "C" {
 #endif
 
-#define ERGON_KERNEL_ABI 4
+#define ERGON_KERNEL_ABI 5
 
 enum ErgonRole { ERGON_PARAM = 0, ERGON_REST = 1, ERGON_LAG = 2 };
 
@@ -97,6 +97,11 @@ typedef struct ErgonKernel {
 
   /* Where this is not 0 the kernel is one in single precision: these are its entry points, and those above are 0. */
   const ErgonSingle* single;
+
+  /* 1: a density in principal stretches. In conditions, value, gradient and hessian q is then s[q_vectors][lanes], the
+     singular values of F (signs as in runtime/lanes/svd3.h), or, with `displacement`, those less 1, and derivatives are
+     by these; principal is never 0. runtime/lanes/stretch_frame.h leads from F and back. */
+  int stretches;
 } ErgonKernel;
 
 #ifdef __cplusplus

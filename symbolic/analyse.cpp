@@ -149,6 +149,8 @@ class Analysis {
     }
     if (e.kind == Kind::call && declared_.contains(e.text))
       throw SourceError(e.place, fmt::format("'{}' is not a function; products are written with '*'", e.text));
+    if (e.kind == Kind::call && e.text == "stretches" && energy_.kind != Energy::Kind::density)
+      throw SourceError(e.place, "'stretches' belongs to a density: they are the singular values of its F");
     for (const ExpressionPtr& argument : e.arguments) names(*argument, known);
   }
 

@@ -6,6 +6,7 @@
 
 #include "symbolic/elaborate.h"
 #include "symbolic/jet.h"
+#include "symbolic/stretches.h"
 
 namespace ergon {
 namespace {
@@ -64,7 +65,7 @@ void add_terms(const Expression& e, double sign, std::vector<std::pair<const Exp
 }  // namespace
 
 const Expression* first_undefined(const Energy& energy, const std::string& case_name, const ExactInputs& inputs) {
-  ClnAlgebra numbers(inputs, digits);
+  ClnAlgebra numbers(inputs, digits_for_derivatives(energy, digits));
   TracedJets jets(energy, numbers);
   elaborate(energy, case_name, jets);
   for (const auto& [expression, components] : jets.parts)
@@ -94,7 +95,7 @@ const Expression& first_change(const Energy& energy, const std::string& case_nam
 
 std::vector<ValueTerm> terms_at(const Energy& energy, const std::string& case_name, const ExactInputs& inputs,
                                 size_t component) {
-  ClnAlgebra numbers(inputs, digits);
+  ClnAlgebra numbers(inputs, digits_for_derivatives(energy, digits));
   TracedJets jets(energy, numbers);
   elaborate(energy, case_name, jets);
   std::vector<std::pair<const Expression*, double>> signed_terms;

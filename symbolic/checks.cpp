@@ -13,9 +13,11 @@ std::vector<Finding> check_case(const Energy& energy, const std::string& name) {
   auto add = [&](std::optional<Finding> finding) {
     if (finding) findings.push_back(std::move(*finding));
   };
+  add(check_stretches(energy, name));
+  if (!findings.empty() && findings.front().severity == Severity::error) return findings;
   add(check_defined(energy, name));
   // What is not defined at random states has no limits worth looking for.
-  if (findings.front().severity == Severity::ok)
+  if (findings.back().severity == Severity::ok)
     for (const auto& check : {check_smooth, check_boundaries})
       for (Finding& finding : check(energy, name)) findings.push_back(std::move(finding));
   for (const auto& check : {check_rigid_motion, check_rest, check_moduli, check_stable_at_rest, check_range,

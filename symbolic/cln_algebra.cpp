@@ -12,6 +12,7 @@
 namespace ergon {
 namespace {
 
+using cln::cl_DF;
 using cln::cl_F;
 using cln::cl_I;
 using cln::cl_R;
@@ -175,6 +176,30 @@ cl_R ClnAlgebra::function(Function f, const cl_F& x) const {
       return f == Function::asin ? cln::atan(other, x) : cln::atan(x, other);
     }
   }
+}
+
+std::vector<ClnNumber> ClnAlgebra::stretches(const Tensor<ClnNumber>& F) const { return decomposed(F.at, false).s; }
+
+Decomposed<ClnNumber> ClnAlgebra::decompose_apart(const std::vector<ClnNumber>& F) const { return decomposed(F, true); }
+
+Decomposed<ClnNumber> ClnAlgebra::decomposed(const std::vector<ClnNumber>& F, bool apart) const {
+  const cl_F one = cln::cl_float(1, format_);
+  const long bits = static_cast<long>(cln::float_digits(one));
+  const cl_F little = cln::scale_float(one, -bits / 2);
+  std::vector<cl_F> f;
+  bool defined = true;
+  for (const ClnNumber& x : F) {
+    defined = defined && x.defined;
+    f.push_back(rounded(x.value));
+    if (apart) f.back() = f.back() + little * cln::cl_float(cl_DF(general_position[f.size() - 1]), format_);
+  }
+  const Decomposed<cl_F> found = decompose<cl_F>(f, one, cln::scale_float(one, 8 - bits));
+  Decomposed<ClnNumber> out;
+  for (const cl_F& s : found.s) out.s.push_back({s, defined});
+  for (const auto& [from, to] : {std::pair(&found.u, &out.u), std::pair(&found.v, &out.v)})
+    for (const Triple<cl_F>& a : *from)
+      to->push_back({ClnNumber{a[0], defined}, ClnNumber{a[1], defined}, ClnNumber{a[2], defined}});
+  return out;
 }
 
 cl_R ClnAlgebra::log1p(const cl_F& x) const {

@@ -11,6 +11,8 @@
 
 #include "symbolic/energy.h"
 #include "symbolic/functions.h"
+#include "symbolic/singular_values.h"
+#include "symbolic/tensor.h"
 
 namespace ergon {
 
@@ -51,6 +53,9 @@ class ClnAlgebra {
   Scalar power(const Scalar& a, const Scalar& b) const;
   Scalar call(Function f, const std::vector<Scalar>& arguments) const;
   Scalar input(const Symbol& symbol, int component) const;
+  std::vector<Scalar> stretches(const Tensor<Scalar>& F) const;
+  // Of a matrix whose singular values are neither equal nor zero, and as near to F as half of the digits tell.
+  Decomposed<Scalar> decompose_apart(const std::vector<Scalar>& F) const;
   void named(const std::string&, int, int, const Scalar&) const {}
 
   bool is_zero(const Scalar& a) const;
@@ -61,6 +66,7 @@ class ClnAlgebra {
   cln::cl_R function(Function f, const cln::cl_F& x) const;
   cln::cl_R log1p(const cln::cl_F& x) const;
   cln::cl_R expm1(const cln::cl_F& x) const;
+  Decomposed<Scalar> decomposed(const std::vector<Scalar>& F, bool apart) const;
 
   const ExactInputs& inputs_;
   cln::float_format_t format_;

@@ -98,6 +98,7 @@ Energy compose(const Energy& barrier, const Energy& distance, Offset offset) {
   out.summary = joined(barrier.summary, " ", distance.summary);
   out.cite = joined(barrier.cite, "; ", distance.cite);
   out.text = barrier.text + "\n" + distance.text;
+  out.part_of = joined(barrier.part_of, "; ", distance.part_of);
   out.fixed_frame = barrier.fixed_frame || distance.fixed_frame;
   for (const Symbol& symbol : barrier.symbols)
     if (symbol.role != Role::dof) out.symbols.push_back(symbol);

@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "symbolic/double_algebra.h"
+#include "symbolic/stretches.h"
 
 namespace ergon {
 namespace {
@@ -144,7 +145,9 @@ std::optional<CriticalState> solve_critical(const Energy& energy, const std::str
   for (const int multiplicity : {1, 2}) {
     ExactInputs inputs = start;
     auto doubles = [](const ExactInputs& at) { return DoubleAlgebra(at); };
-    auto floats = [](const ExactInputs& at) { return ClnAlgebra(at, critical_digits); };
+    auto floats = [&](const ExactInputs& at) {
+      return ClnAlgebra(at, digits_for_derivatives(energy, critical_digits));
+    };
     if (!newton<DoubleAlgebra>(energy, case_name, target, multiplicity, dofs, 20, 1e-13, doubles, inputs)) continue;
     if (!within_ranges(energy, inputs)) continue;
     if (!newton<ClnAlgebra>(energy, case_name, target, multiplicity, dofs, 9, 1e-68, floats, inputs)) continue;
@@ -175,7 +178,7 @@ std::pair<bool, bool> signs_about(const Energy& energy, const std::string& case_
 
 std::vector<CriticalSite> vanishing_sites(const Energy& energy, const std::string& case_name,
                                           const ExactInputs& inputs) {
-  ClnAlgebra numbers(inputs, critical_digits);
+  ClnAlgebra numbers(inputs, digits_for_derivatives(energy, critical_digits));
   std::vector<CriticalSite> found;
   for (const auto& [site, jet] : trace(energy, case_name, numbers).sites)
     if (jet.value.defined && size_of(jet.value) < 1e-60) found.push_back(site);

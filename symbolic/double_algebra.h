@@ -30,6 +30,13 @@ class DoubleAlgebra {
   }
   void named(const std::string&, int, int, double) const {}
 
+  std::vector<double> stretches(const Tensor<double>& F) const { return decompose(F.at, 1.0, 0x1p-50).s; }
+  // As in ClnAlgebra.
+  Decomposed<double> decompose_apart(std::vector<double> F) const {
+    for (size_t i = 0; i < F.size(); ++i) F[i] += 0x1p-26 * general_position[i];
+    return decompose(F, 1.0, 0x1p-50);
+  }
+
   bool is_zero(double a) const { return a == 0; }
   bool less(double a, double b) const { return a < b; }
 

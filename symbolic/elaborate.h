@@ -13,6 +13,8 @@
 //   Scalar input(const Symbol& symbol, int component);          column by column
 //   void named(const std::string& let, int component, int size, const Scalar& value);   a let's component was formed;
 //                                                    it may return a Scalar that stands for it from then on
+//   std::vector<Scalar> stretches(const Tensor<Scalar>& F);     optional: the singular values of F, of which one that
+//                                                    lacks them throws std::domain_error
 // and, when it wants to know where it is in the text,
 //   void at(const Expression& e);                              the operations that follow are those of e
 //   void formed(const Expression& e, const std::vector<Scalar>& components);   the result of e

@@ -170,8 +170,14 @@ class Elaborator {
     if (f == "columns") return op_.columns(t);
     if (f == "sym") return op_.symmetric_part(t[0]);
     if (f == "dev") return op_.deviator(t[0]);
+    if (f == "stretches") return stretches(t[0]);
     if (f == "dihedral") return op_.scalar(op_.dihedral(t[0], t[1], t[2], t[3]));
     throw SourceError(e.place, "unknown function '" + f + "'");
+  }
+
+  T stretches(const T& F) {
+    if constexpr (requires { a_.stretches(F); }) return {{F.shape.cols, 1}, a_.stretches(F)};
+    throw std::domain_error("this algebra has no singular values");
   }
 
   A& a_;

@@ -74,6 +74,7 @@ struct Energy {
   std::vector<Condition> active;  // whoever builds the list of stencils keeps those where all hold
   std::vector<Condition> require;
   ExpressionPtr value;       // null in a distance
+  std::string part_of;       // `part TEXT`: the sum that it is sound in; "" for one that is sound alone
   bool fixed_frame = false;  // `frame fixed`: the author states that it is not invariant under rotation
   std::string text;          // the file as read
   std::string file;

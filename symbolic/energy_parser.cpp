@@ -14,8 +14,9 @@ namespace ergon {
 namespace {
 
 const std::vector<std::string> headers = {"density", "energy", "barrier", "distance"};
-const std::vector<std::string> keywords = {"density", "energy", "barrier", "distance", "cite",  "param", "lag", "rest",
-                                           "dof",     "let",    "active",  "require",  "frame", "value", "case"};
+const std::vector<std::string> keywords = {"density", "energy", "barrier", "distance", "cite",   "param",
+                                           "lag",     "rest",   "dof",     "let",      "active", "require",
+                                           "frame",   "value",  "case",    "part"};
 constexpr const char* any_header =
     "`density NAME GEOMETRY`, `energy NAME STENCIL`, `barrier NAME` or `distance NAME STENCIL`";
 
@@ -142,6 +143,7 @@ class EnergyParser {
     if (word == "rest") return declare(statement, end, Role::rest);
     if (word == "dof") return declare(statement, end, Role::dof);
     if (word == "frame") return frame(statement);
+    if (word == "part") return part(statement, end);
 
     if (word == "let" || word == "case" || word == "active" || word == "require" || word == "value") {
       ExpressionParser parser(tokenise(statement, end));
@@ -165,6 +167,14 @@ class EnergyParser {
       throw SourceError(statement.place(end), "expected the source of the energy, found the end of the statement");
     if (!energy_.cite.empty()) energy_.cite += "; ";
     energy_.cite += statement.text.substr(start);
+  }
+
+  void part(const Statement& statement, size_t end) {
+    const size_t start = statement.text.find_first_not_of(" \t", end);
+    if (start == std::string::npos)
+      throw SourceError(statement.place(end), "expected what the energy is a part of, found the end of the statement");
+    if (!energy_.part_of.empty()) throw SourceError(statement.place(), "a second `part`; an energy states it once");
+    energy_.part_of = statement.text.substr(start);
   }
 
   void declare(const Statement& statement, size_t end, Role role) {

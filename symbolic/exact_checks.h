@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "symbolic/checks.h"
+#include "symbolic/stretches.h"
 
 namespace ergon {
 

@@ -50,6 +50,12 @@ class Call {
       if (n < 1 || n > 9) throw SourceError(place(0), "'identity' expects the size of the matrix, 1 to 9");
       return {{n, n}, {}};
     }
+    if (f == "stretches") {
+      count(1);
+      if (call_.arguments[0]->kind != Expression::Kind::name || call_.arguments[0]->text != "F")
+        throw SourceError(place(0), "'stretches' is of F itself, the deformation gradient of a density");
+      return {{q_[0].shape.cols, 1}, {}};
+    }
     if (f == "dihedral") {
       count(4);
       for (size_t i = 0; i < 4; ++i) vector_of_3(i);

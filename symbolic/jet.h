@@ -5,14 +5,18 @@
 // Beyond what symbolic/elaborate.h asks of an algebra, B supplies
 //   bool is_zero(const Scalar&);                 exactly zero, whatever the inputs
 //   bool less(const Scalar&, const Scalar&);
+//   Decomposed<Scalar> decompose_apart(const std::vector<Scalar>& F);   where energies may call `stretches`
 // Derivatives may be limited to the first ones, and taken by every symbol instead of the dofs alone.
 // The derivative of abs at 0 is 1; where the arguments of min or max are equal, the first is taken.
 
+#include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "symbolic/energy.h"
 #include "symbolic/functions.h"
+#include "symbolic/tensor.h"
 
 namespace ergon {
 
@@ -113,6 +117,45 @@ class JetAlgebra {
     if (x.gradient.empty()) return {value, {}, {}};
     const auto [first, second] = derivatives(f, x.value, value);
     return chain(x, value, first, second);
+  }
+
+  // Singular values of F; symbolic/reference.h tells how many digits their derivatives take. With W = U' dF V,
+  //   d s_i = W_ii,
+  //   d^2 s_i = sum over j != i of 1/2 (W_ij + W_ji)^2/(s_i - s_j) + 1/2 (W_ij - W_ji)^2/(s_i + s_j),
+  // and where F has less than three columns W_ni^2/s_i for each normal n: second-order perturbation of F'F.
+  std::vector<Scalar> stretches(const Tensor<Scalar>& F) requires requires(B& b, std::vector<S> f) {
+    b.decompose_apart(f);
+  }
+  {
+    std::vector<S> values;
+    for (const Scalar& x : F.at) values.push_back(x.value);
+    const auto svd = b_.decompose_apart(values);
+    const size_t n = svd.s.size();
+    std::array<std::array<std::vector<S>, 3>, 3> w;
+    for (size_t i = 0; i < 3; ++i)
+      for (size_t j = 0; j < n; ++j)
+        for (size_t k = 0; k < F.at.size(); ++k)
+          add_scaled(w[i][j], b_.multiply(svd.u[i][k % 3], svd.v[j][k / 3]), F.at[k].gradient, static_cast<size_t>(n_));
+    const S half = b_.number("0.5");
+    std::vector<Scalar> out;
+    for (size_t i = 0; i < n; ++i) {
+      Scalar s{svd.s[i], w[i][i], {}};
+      for (size_t j = 0; j < 3 && order_ == Order::second && !s.gradient.empty(); ++j) {
+        if (j == i) continue;
+        if (j >= n) {
+          add_outer(s.hessian, reciprocal(svd.s[i]), w[j][i], w[j][i]);
+          continue;
+        }
+        const std::vector<S> both = sum(w[i][j], w[j][i]);
+        std::vector<S> difference = w[j][i];
+        for (S& x : difference) x = b_.negate(x);
+        difference = sum(w[i][j], difference);
+        add_outer(s.hessian, b_.divide(half, b_.subtract(svd.s[i], svd.s[j])), both, both);
+        add_outer(s.hessian, b_.divide(half, b_.add(svd.s[i], svd.s[j])), difference, difference);
+      }
+      out.push_back(std::move(s));
+    }
+    return out;
   }
 
  private:

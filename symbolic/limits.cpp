@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "symbolic/elaborate.h"
+#include "symbolic/stretches.h"
 
 namespace ergon {
 namespace {
@@ -50,7 +51,7 @@ Side side_at(const Energy& energy, const std::string& case_name, const ExactInpu
              const CriticalTarget* boundary = nullptr) {
   Side side;
   if (!within_ranges(energy, inputs)) return side;
-  ClnAlgebra numbers(inputs, critical_digits);
+  ClnAlgebra numbers(inputs, digits_for_derivatives(energy, critical_digits));
   JetAlgebra<ClnAlgebra> jets(energy, numbers);
   const Elaborated<Jet<ClnNumber>> result = elaborate(energy, case_name, jets);
   side.allowed = true;

@@ -8,6 +8,7 @@
 #include "symbolic/cln_algebra.h"
 #include "symbolic/elaborate.h"
 #include "symbolic/jet.h"
+#include "symbolic/stretches.h"
 
 namespace ergon {
 namespace {
@@ -32,7 +33,7 @@ ReferenceValue evaluate_reference(const Energy& energy, const std::string& case_
 
 ReferenceValue evaluate_reference_at(const Energy& energy, const std::string& case_name, const ExactInputs& values,
                                      int digits) {
-  ClnAlgebra numbers(values, digits);
+  ClnAlgebra numbers(values, digits_for_derivatives(energy, digits));
   JetAlgebra<ClnAlgebra> jets(energy, numbers);
   const Elaborated<Jet<ClnNumber>> result = elaborate(energy, case_name, jets);
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "runtime/aligned.h"
+#include "runtime/lanes/lanes.h"
 #include "tools/accuracy_states.h"
 #include "tools/installation.h"
 
@@ -76,7 +77,11 @@ class Evaluation {
       for (size_t p = 0; p < n; ++p) sum += weight(r / 3, p) * points[3 * p + r % 3];
       std::fill_n(q.begin() + static_cast<long>(r * width), width, static_cast<Real>(sum));
     }
-    entries.hessian(q.data(), e.data(), u.data(), value.data(), gradient.data(), hessian.data());
+    AlignedVector<Real> margin(width);
+    const auto& operations =
+        k_.single != nullptr ? lanes::single_lane_operations(k_.lanes) : lanes::lane_operations(k_.lanes);
+    operations.evaluate_at(k_, q.data(), e.data(), u.data(), value.data(), margin.data(), gradient.data(),
+                           hessian.data());
     result[0] = {value[0]};
     auto h = [&](size_t a, size_t b) -> double {
       return hessian[(std::max(a, b) * (std::max(a, b) + 1) / 2 + std::min(a, b)) * width];

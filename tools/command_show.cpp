@@ -51,8 +51,10 @@ void show_kernel(const Energy& energy, const std::string& case_name, std::ostrea
       case_name.empty() ? "" : " of case " + case_name,
       energy.kind == Energy::Kind::density ? "point of quadrature" : "stencil", n.value, n.gradient, n.hessian,
       n.divisions, n.roots, n.calls, n.uniforms, n.elements,
-      energy.kind == Energy::Kind::density ? "F" : "a vector of differences", kernel.module.q_size(),
-      structure_of(kernel.module));
+      kernel.module.stretches                ? "a vector of stretches"
+      : energy.kind == Energy::Kind::density ? "F"
+                                             : "a vector of differences",
+      kernel.module.q_size(), structure_of(kernel.module));
   const std::string kernel_functions = functions_of(kernel.source);
   out << fmt::format("\nemitted for {} lanes, {} of {} lines (the whole file: ergon show {}{} --source)\n\n{}",
                      lanes::best_lanes(), std::count(kernel_functions.begin(), kernel_functions.end(), '\n'),

@@ -5,6 +5,7 @@
 #include "runtime/lanes/evaluate_isotropic.h"
 #include "runtime/lanes/evaluate_projection.h"
 #include "runtime/lanes/number_blocks.h"
+#include "runtime/lanes/stretch_frame.h"
 
 namespace ergon::lanes {
 
@@ -43,6 +44,41 @@ struct Tally {
   }
 };
 
+#ifdef ERGON_SINGLE
+using Entries = ErgonSingle;
+#else
+using Entries = ErgonKernel;
+#endif
+
+// Of the block's kernel, where it is a density in principal stretches.
+template <class S>
+auto stretch_kernel(const Stencils& s, int block) {
+  static_assert(S::kDensity);
+  return StretchKernel<Entries, S::kVectors>{entries_of(s), s.kernel->displacement != 0, data_of(s, block),
+                                             uniforms_of(s)};
+}
+
+template <class S>
+bool in_stretches(const Stencils& s) {
+  return S::kDensity && s.kernel->stretches != 0;
+}
+
+template <class S>
+void kernel_value(const Stencils& s, int block, const Scalar* q, Scalar* value, Scalar* margin) {
+  if constexpr (S::kDensity) {
+    if (in_stretches<S>(s)) return stretch_kernel<S>(s, block).value(q, value, margin);
+  }
+  entries_of(s).value(q, data_of(s, block), uniforms_of(s), value, margin);
+}
+
+template <class S>
+void kernel_gradient(const Stencils& s, int block, const Scalar* q, Scalar* value, Scalar* by_q) {
+  if constexpr (S::kDensity) {
+    if (in_stretches<S>(s)) return stretch_kernel<S>(s, block).gradient(q, value, by_q);
+  }
+  entries_of(s).gradient(q, data_of(s, block), uniforms_of(s), value, by_q);
+}
+
 template <class S>
 void value_of(const Stencils& s, BlockRange range, const double* x, ChunkResult* result) {
   Tally tally;
@@ -56,7 +92,7 @@ void value_of(const Stencils& s, BlockRange range, const double* x, ChunkResult*
     for (int p = 0; p < s.quadrature; ++p) {
       const Weights<S> w(s, block, p);
       form_q<S>(s, w, points, q);
-      entries_of(s).value(q, data_of(s, block), uniforms_of(s), value, margin);
+      kernel_value<S>(s, block, q, value, margin);
       sum += w.times_volume(load(value));
       if (s.kernel->requires_ > 0) tally.limit(margin, count);
     }
@@ -80,7 +116,7 @@ void gradient_of(const Stencils& s, BlockRange range, const double* x, double* g
     for (int p = 0; p < s.quadrature; ++p) {
       const Weights<S> w(s, block, p);
       form_q<S>(s, w, points, q);
-      entries_of(s).gradient(q, data_of(s, block), uniforms_of(s), value, by_q);
+      kernel_gradient<S>(s, block, q, value, by_q);
       sum += w.times_volume(load(value));
       chain_gradient<S>(s, w, by_q, by_point);
     }
@@ -141,6 +177,10 @@ void hessian_of(const Stencils& s, BlockRange range, const ChunkBlocks& blocks, 
           const Scalar negative = mode == Negative::absolute ? 1 : 0;
           entries_of(s).projected(q, data_of(s, block), uniforms_of(s), negative, value, by_q, packed, replaced);
           changed += __builtin_popcount(bits(less(splat(0), load(replaced))) & ((1u << count) - 1));
+        } else if (in_stretches<S>(s)) {
+          if constexpr (S::kDensity)
+            changed += __builtin_popcount(stretch_kernel<S>(s, block).hessian(q, project, mode, value, by_q, packed) &
+                                          ((1u << count) - 1));
         } else if (closed_form) {
           entries_of(s).gradient(q, data_of(s, block), uniforms_of(s), value, by_q);
           changed += closed_form_hessian<S>(s, block, count, q, mode, packed);
@@ -170,6 +210,38 @@ void hessian_of(const Stencils& s, BlockRange range, const ChunkBlocks& blocks, 
   *result = tally.result(changed + indefinite.changed());
 }
 
+template <int Q>
+void evaluate_stretches(const ErgonKernel& k, const Scalar* q, const Scalar* e, const Scalar* u, Scalar* value,
+                        Scalar* margin, Scalar* by_q, Scalar* packed) {
+#ifdef ERGON_SINGLE
+  const StretchKernel<Entries, Q> kernel{*k.single, k.displacement != 0, e, u};
+#else
+  const StretchKernel<Entries, Q> kernel{k, k.displacement != 0, e, u};
+#endif
+  kernel.value(q, value, margin);
+  kernel.hessian(q, false, Negative::clamp, value, by_q, packed);
+}
+
+void evaluate_at(const ErgonKernel& k, const void* q_, const void* e_, const void* u_, void* value_, void* margin_,
+                 void* by_q_, void* packed_) {
+  const auto *q = static_cast<const Scalar*>(q_), *e = static_cast<const Scalar*>(e_),
+             *u = static_cast<const Scalar*>(u_);
+  auto *value = static_cast<Scalar*>(value_), *margin = static_cast<Scalar*>(margin_),
+       *by_q = static_cast<Scalar*>(by_q_), *packed = static_cast<Scalar*>(packed_);
+  if (k.stretches != 0) {
+    if (k.q_vectors == 3) return evaluate_stretches<3>(k, q, e, u, value, margin, by_q, packed);
+    if (k.q_vectors == 2) return evaluate_stretches<2>(k, q, e, u, value, margin, by_q, packed);
+    return evaluate_stretches<1>(k, q, e, u, value, margin, by_q, packed);
+  }
+#ifdef ERGON_SINGLE
+  const Entries& entries = *k.single;
+#else
+  const Entries& entries = k;
+#endif
+  entries.value(q, e, u, value, margin);
+  entries.hessian(q, e, u, value, by_q, packed);
+}
+
 const LaneOperations kOperations = {
     kWidth,
     [](const Stencils& s) { return with_shape(s, [&]<class S>(S) { return scratch_of<S>(s); }); },
@@ -184,7 +256,8 @@ const LaneOperations kOperations = {
       with_shape(s,
                  [&]<class S>(S) { hessian_of<S>(s, range, blocks, x, projection, room, gradient, values, result); });
     },
-    number_chunk_blocks};
+    number_chunk_blocks,
+    evaluate_at};
 
 }  // namespace
 

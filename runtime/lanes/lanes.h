@@ -102,6 +102,10 @@ struct LaneOperations {
                   double* gradient, double* values, ChunkResult*);
   // Returns how many blocks there are.
   int (*number_blocks)(const Stencils&, BlockRange, const ChunkNumbering&);
+  // A kernel at one vector of q (F - I where it is one of displacements), whatever it is a function of: value, smallest
+  // margin, gradient and packed Hessian by q, as it is. Arrays as in runtime/kernel.h, over the kernel's numbers.
+  void (*evaluate_at)(const ErgonKernel&, const void* q, const void* elements, const void* uniforms, void* value,
+                      void* margin, void* gradient, void* hessian);
 };
 
 // Those there is code for, ascending. Two lanes are what every x86-64 processor has (SSE2), and ARM ones (NEON).

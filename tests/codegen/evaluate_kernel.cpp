@@ -3,6 +3,8 @@
 #include <cstdlib>
 #include <new>
 
+#include "runtime/lanes/lanes.h"
+
 namespace ergon::testing {
 namespace {
 
@@ -92,8 +94,8 @@ std::vector<KernelValue> evaluate_kernel(const Energy& energy, const ErgonKernel
     }
     k.prepare_uniforms(params.get(), u.get());
     k.prepare_elements(raw.get(), u.get(), e.get());
-    k.value(q.get(), e.get(), u.get(), value.get(), require.get());
-    k.hessian(q.get(), e.get(), u.get(), value.get(), gradient.get(), hessian.get());
+    lanes::lane_operations(w).evaluate_at(k, q.get(), e.get(), u.get(), value.get(), require.get(), gradient.get(),
+                                          hessian.get());
     for (int mode = 0; mode < 2 && k.projected != nullptr; ++mode)
       k.projected(q.get(), e.get(), u.get(), mode, value.get(), gradient.get(), (mode ? absolute : clamped).get(),
                   changed.get() + mode * w);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 
@@ -55,6 +56,81 @@ TEST(Laws, LimitsOfRubber) {
   EXPECT_NEAR(uniaxial_stress("gent", {{"mu", {3}}, {"Jm", {1e9}}, {"K", {70}}}, 1.5), free, 1e-8);
 }
 
+// Ogden's stress of an incompressible bar: the sum of mu_p*(l^(a_p - 1) - l^(-a_p/2 - 1)).
+TEST(Laws, OgdenInUniaxialTension) {
+  const Inputs params = {{"mu1", {0.63}}, {"mu2", {0.0012}}, {"mu3", {0.01}}, {"a1", {1.3}},
+                         {"a2", {5}},     {"a3", {-2}},      {"K", {70}}};  // his rubber, in MPa
+  for (const double l : {0.5, 0.9, 1.1, 2.0, 6.0}) {
+    const auto term = [&](double a) { return std::pow(l, a - 1) - std::pow(l, -a / 2 - 1); };
+    const double expected = 0.63 * term(1.3) + 0.0012 * term(5) - 0.01 * term(-2);
+    EXPECT_NEAR(uniaxial_stress("ogden", params, l), expected, 1e-13 * std::abs(expected)) << l;
+  }
+}
+
+// With the power 2 alone, and next to nothing against volume, Ogden's rubber is neo-Hookean, as a solid and as a sheet.
+TEST(Laws, OgdenWithOneSquareIsNeoHookean) {
+  Inputs in = {{"mu", {3}}, {"mu1", {3}}, {"mu2", {0}},   {"mu3", {0}}, {"a1", {2}},
+               {"a2", {4}}, {"a3", {-2}}, {"K", {1e-30}}, {"h", {0.5}}};
+  const auto same = [&](const std::string& a, const std::string& b) {
+    const ReferenceValue x = at(a, in), y = at(b, in);
+    EXPECT_NEAR(x.value, y.value, 1e-13 * y.value);
+    for (size_t i = 0; i < y.hessian.size(); ++i) EXPECT_NEAR(x.hessian[i], y.hessian[i], 1e-11);
+  };
+  in["F"] = {1.2, 0.1, -0.3, 0.2, 0.9, 0.4, 0.1, -0.2, 1.1};
+  same("ogden", "isochoric_neo_hookean");
+  in["F"] = {1.2, 0.1, -0.3, 0.2, 0.9, 0.4};
+  same("ogden_membrane", "incompressible_membrane");
+}
+
+// Stress along the first axis of F = diag(a, b, b), turned in space: the laws in principal stretches by hand.
+TEST(Laws, PrincipalStretchesInTension) {
+  const double a = 1.5, b = 0.8, E = 2, nu = 0.25, mu = E / (2 * (1 + nu)), la = E * nu / ((1 + nu) * (1 - 2 * nu));
+  const Inputs in = {{"F", {0, a, 0, -b, 0, 0, 0, 0, b}}, {"E", {E}}, {"nu", {nu}}, {"mu", {mu}}};
+  const auto stress = [&](const std::string& law) { return at(law, in).gradient[1]; };
+  EXPECT_NEAR(stress("hencky"), (2 * mu * std::log(a) + la * std::log(a * b * b)) / a, 1e-14);
+  EXPECT_NEAR(stress("arap"), 2 * mu * (a - 1), 1e-14);
+  EXPECT_NEAR(stress("corotated_linear"), 2 * mu * (a - 1) + la * (a + 2 * b - 3), 1e-14);
+  EXPECT_NEAR(stress("fixed_corotated"), 2 * mu * (a - 1) + la * (a * b * b - 1) * b * b, 1e-14);
+}
+
+// A bar of foam that is free at its sides: b = a^(-1/4), Poisson's ratio 1/4 in logarithms.
+TEST(Laws, BlatzAndKoContractByAQuarter) {
+  const double a = 1.5, b = std::pow(a, -0.25);
+  const ReferenceValue v = at("blatz_ko", {{"F", {a, 0, 0, 0, b, 0, 0, 0, b}}, {"mu", {3}}});
+  EXPECT_NEAR(v.gradient[0], 3 * (std::pow(a, -0.5) - std::pow(a, -3.0)), 1e-14);
+  EXPECT_NEAR(v.gradient[4], 0, 1e-14);
+}
+
+TEST(Laws, AMuscleInItsFullTensionPullsAlongItsFibres) {
+  const ReferenceValue v =
+      at("muscle", {{"F", {1, 0, 0, 0, 1, 0, 0, 0, 1}}, {"tension", {8}}, {"activation", {0.25}}, {"a", {0, 3, 0}}});
+  for (size_t i = 0; i < 9; ++i) EXPECT_NEAR(v.gradient[i], i == 4 ? 2 : 0, 1e-15);
+}
+
+// The four triangles of a tetrahedron of volume 1/6, wherever it is.
+TEST(Laws, PressureOnAClosedSurfaceIsThatTimesItsVolume) {
+  const std::vector<std::vector<double>> x = {{5, 6, 7}, {6, 6, 7}, {5, 7, 7}, {5, 6, 8}};
+  double value = 0;
+  std::vector<double> force(3, 0.0);
+  for (const auto& [i, j, k] : {std::array{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}) {
+    const auto point = [&](int p) { return x[static_cast<size_t>(p)]; };
+    const ReferenceValue v = at("pressure", {{"x0", point(i)}, {"x1", point(j)}, {"x2", point(k)}, {"p", {3}}});
+    value += v.value;
+    for (size_t c = 0; c < 9; ++c) force[c % 3] += v.gradient[c];
+  }
+  EXPECT_NEAR(value, -3.0 / 6, 1e-13);
+  for (const double f : force) EXPECT_NEAR(f, 0, 1e-13);
+}
+
+TEST(Laws, StrainIsLimited) {
+  Inputs in = {{"F", {1.2, 0, 0, 0, 1.05, 0}}, {"k", {2}}, {"threshold", {1.1}}, {"limit", {1.3}}};
+  const ReferenceValue v = at("strain_limit", in);
+  EXPECT_NEAR(v.value, 2 * 0.25 * std::log(2.0), 1e-14);
+  EXPECT_NEAR(v.gradient[4], 0, 1e-15);
+  in["F"] = {1.09, 0, 0, 0, 1.05, 0};
+  EXPECT_EQ(at("strain_limit", in).value, 0);
+}
+
 // Free at its sides a strip has its Young's modulus, and contracts by Poisson's ratio.
 TEST(Laws, MembranesInUniaxialTension) {
   const double e = 1e-3, nu = 0.25, a = std::sqrt(1 + 2 * e), b = std::sqrt(1 - 2 * nu * e);
@@ -92,6 +168,7 @@ TEST(Laws, HingesAgreeAtSmallAngles) {
   const double by_angle = at("discrete_shell_hinge", flat).value;
   EXPECT_GT(by_angle, 1e-9);
   EXPECT_NEAR(at("tan_hinge", flat).value, by_angle, 1e-8 * by_angle);
+  EXPECT_NEAR(at("quadratic_bending", flat).value, by_angle, 1e-7 * by_angle);
 }
 
 // Friction grows to the static coefficient at epsv and falls to the kinetic one at epsv + fall.
