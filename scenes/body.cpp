@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "runtime/error.h"
+#include "runtime/mesh/curve.h"
 #include "runtime/mesh/mesh_build.h"
 #include "runtime/mesh/mesh_import.h"
 #include "runtime/mesh/mesh_tools.h"
@@ -35,13 +36,33 @@ Transform placing(const SceneShape& shape) {
 
 // The place of what a shape is made from, for messages.
 const Place& source_place(const SceneShape& shape) {
-  for (const char* key : {"mesh", "box", "sphere", "tube", "torus"})
+  for (const char* key : {"mesh", "box", "sphere", "tube", "torus", "curve", "points"})
     if (shape.wrote(key)) return shape.at(key);
   return shape.place;
 }
 
 const char* kind_of_source(const SceneShape& shape) {
-  return shape.box ? "box" : shape.sphere ? "sphere" : shape.tube ? "tube" : shape.torus ? "torus" : "mesh";
+  return shape.box            ? "box"
+         : shape.sphere       ? "sphere"
+         : shape.tube         ? "tube"
+         : shape.torus        ? "torus"
+         : shape.curve        ? "curve"
+         : shape.mesh.empty() ? "points"
+                              : "mesh";
+}
+
+std::vector<Eigen::Vector3d> vectors(const std::vector<Vector3>& points) {
+  std::vector<Eigen::Vector3d> out;
+  for (const Vector3& point : points) out.push_back(vector(point));
+  return out;
+}
+
+// A line or loose points.
+Mesh thin_mesh(const SceneShape& shape) {
+  if (!shape.curve) return point_mesh(vectors(shape.points));
+  const CurveSource& curve = *shape.curve;
+  const std::vector<Eigen::Vector3d> points = vectors(curve.points);
+  return line_mesh(curve.cells ? smooth_curve(points, curve.closed, *curve.cells) : points, curve.closed);
 }
 
 // A surface that is made or read, where it starts.
@@ -56,7 +77,8 @@ Mesh placed_surface(const SceneShape& shape, const std::string& path) {
 }
 
 double section_of(const SceneObject& object, int dimension) {
-  return dimension == 2 ? object.thickness : dimension == 1 ? object.cross_section : 1;
+  const double sections[] = {object.volume, object.cross_section, object.thickness, 1};
+  return sections[dimension];
 }
 
 Mesh made_box(const SceneObject& object) {
@@ -67,7 +89,8 @@ Mesh made_box(const SceneObject& object) {
   if (cells > most_cells)
     throw SourceError(box.at("cells"),
                       fmt::format("this makes {:.3g} cells; at most {:.3g} fit into one object", cells, most_cells));
-  return ergon::box_mesh(element, vector(box.size), box.cells);
+  return shape_of(element) == ReferenceShape::triangle ? alternating_triangles(element, vector(box.size), box.cells)
+                                                       : ergon::box_mesh(element, vector(box.size), box.cells);
 }
 
 Mesh filled_mesh(const SceneObject& object, const std::string& path) {
@@ -97,20 +120,22 @@ Mesh file_mesh(const SceneObject& object, const std::string& path) {
   return mesh;
 }
 
-// Membranes need a thickness, lines a cross-section, and nothing else has one.
+// Membranes need a thickness, lines a cross-section, loose points a volume, and nothing else has one.
 void check_section(const SceneObject& object, Element element) {
   const int dimension = dimension_of(element);
-  const char* kinds[] = {"point", "line", "membrane", "solid"};
-  for (const auto& [key, use, unit] : {std::tuple("thickness", 2, "m"), std::tuple("cross_section", 1, "m^2")}) {
+  const char* kinds[] = {"loose point", "line", "membrane", "solid"};
+  for (const auto& [key, use, unit] :
+       {std::tuple("thickness", 2, "m"), std::tuple("cross_section", 1, "m^2"), std::tuple("volume", 0, "m^3")}) {
     if (object.wrote(key) && dimension != use)
       throw SourceError(object.at(key), fmt::format("'{}' has no use here: {} cells make a {}", key, name_of(element),
                                                     kinds[dimension]));
     if (!(section_of(object, use) > 0) && dimension == use)
       throw SourceError(
           object.box ? object.at("element") : source_place(object),
-          fmt::format("{} cells make a {}: give its '{}' in {} (a closed surface in .obj, .stl or .ply is "
-                      "filled)",
-                      name_of(element), kinds[dimension], key, unit));
+          fmt::format("{} cells make a {}: give its '{}' in {}{}", name_of(element), kinds[dimension], key, unit,
+                      dimension == 2 ? " (a closed surface in .obj, .stl or .ply is filled, unless 'element' is tri3 "
+                                       "or tri6)"
+                                     : ""));
   }
 }
 
@@ -146,9 +171,15 @@ Mesh load_mesh(const SceneObject& object, const std::string& folder) {
     mesh = transformed(made_box(object), placing(object));
   else if (object.mesh.ends_with(".msh"))
     mesh = file_mesh(object, path);
+  else if (object.curve || object.wrote("points"))
+    mesh = transformed(thin_mesh(object), placing(object));
+  else if (object.keeps_surface())
+    mesh = placed_surface(object, path);
   else
     mesh = filled_mesh(object, path);
-  if (object.element == "tet10" && mesh.element == Element::tet4) mesh = to_quadratic(mesh, Element::tet10);
+  // The element that is wanted of what was filled, kept or drawn.
+  const Element wanted = element_named(object.element);
+  if (degree_of(wanted) == 2 && mesh.element == linear_element(wanted)) mesh = to_quadratic(mesh, wanted);
   if (!object.affine()) check_section(object, mesh.element);
   mesh.source = object.mesh.empty() ? fmt::format("{} of object '{}'", kind_of_source(object), object.name) : path;
   check_mesh(mesh);
@@ -249,7 +280,11 @@ Body load_obstacle(const SceneObstacle& obstacle, const std::string& folder) {
   const std::string path = (std::filesystem::path(folder) / obstacle.mesh).lexically_normal().string();
   try {
     if (obstacle.box)
-      body.mesh = transformed(box_hexes(vector(obstacle.box->size), obstacle.box->cells), placing(obstacle));
+      body.mesh =
+          transformed(box_mesh(element_named(obstacle.element), vector(obstacle.box->size), obstacle.box->cells),
+                      placing(obstacle));
+    else if (obstacle.curve || obstacle.wrote("points"))
+      body.mesh = transformed(thin_mesh(obstacle), placing(obstacle));
     else
       body.mesh = obstacle.mesh.ends_with(".msh") ? transformed(read_mesh(path), placing(obstacle))
                                                   : placed_surface(obstacle, path);

@@ -106,6 +106,7 @@ void add_surfaces(const Scene& scene, const ContactLaws& laws, const UsedKernels
     if (pair.mu_kinetic) both.sliding = *pair.mu_kinetic;
     options.friction[b][a] = both;
   }
+  lower_offsets(surface, out.start.x, contact.dhat);
   SurfaceLaws loaded;
   for (size_t kind = 0; kind < kContactKinds; ++kind)
     loaded.barrier[kind] = kernels.get(*laws.surface[kind], barrier_parts[kind].case_name);

@@ -8,12 +8,12 @@
 #include <set>
 
 #include "runtime/error.h"
-#include "runtime/mesh/element_faces.h"
 #include "runtime/mesh/mesh_tools.h"
 #include "runtime/solver/stopwatch.h"
 #include "scenes/build_affine.h"
 #include "scenes/build_contact.h"
 #include "scenes/laws.h"
+#include "scenes/object_laws.h"
 #include "scenes/start_check.h"
 #include "scenes/surface_check.h"
 #include "scenes/used_kernels.h"
@@ -23,12 +23,6 @@ namespace ergon {
 namespace {
 
 Eigen::Vector3d vector(const Vector3& v) { return {v[0], v[1], v[2]}; }
-
-// One law of one object, checked.
-struct UsedLaw {
-  const Energy* energy;
-  Parameters params;
-};
 
 // The laws of the scene itself: null where a scene does not need one.
 struct WorldLaws {
@@ -52,16 +46,6 @@ WorldLaws world_laws(const Scene& scene, Laws& laws, std::vector<std::string>& s
   return out;
 }
 
-std::vector<UsedLaw> object_laws(const SceneObject& object, Laws& laws) {
-  std::vector<UsedLaw> out;
-  for (const EnergyUse& use : object.energies) {
-    const Energy& energy = laws.get(use);
-    check_supported(energy, use);
-    out.push_back({&energy, checked_params(energy, use)});
-  }
-  return out;
-}
-
 // What is unsound in the scene's own energies, each checked once.
 std::vector<std::string> law_warnings(const Scene& scene, const std::vector<std::vector<UsedLaw>>& used) {
   std::vector<std::string> out;
@@ -79,63 +63,6 @@ std::vector<std::string> law_warnings(const Scene& scene, const std::vector<std:
   return out;
 }
 
-std::vector<int> edges_of(const Body& body) {
-  const int per_cell = nodes_of(body.ordered.element);
-  const std::vector<std::array<int, 2>> corners = corner_edges(body.ordered.element);
-  std::set<std::pair<int, int>> edges;
-  for (size_t first = 0; first < body.ordered.cells.size(); first += static_cast<size_t>(per_cell))
-    for (auto [a, b] : corners)
-      edges.insert(std::minmax(body.ordered.cells[first + static_cast<size_t>(a)],
-                               body.ordered.cells[first + static_cast<size_t>(b)]));
-  std::vector<int> out;
-  for (auto [a, b] : edges) out.insert(out.end(), {body.first_vertex + a, body.first_vertex + b});
-  return out;
-}
-
-std::vector<int> points_of(int first, int count) {
-  std::vector<int> out(static_cast<size_t>(count));
-  for (int i = 0; i < count; ++i) out[static_cast<size_t>(i)] = first + i;
-  return out;
-}
-
-// Rest data that a point energy declares by this name.
-std::map<std::string, std::vector<double>> point_masses(const Energy& energy, const Eigen::VectorXd& mass,
-                                                        const std::vector<int>& points) {
-  if (energy.find("mass") == nullptr || energy.find("mass")->role != Role::rest) return {};
-  std::vector<double> out;
-  for (const int v : points) out.push_back(mass[v]);
-  return {{"mass", out}};
-}
-
-Potential object_potential(const UsedLaw& law, const Kernel& kernel, const Body& body, const Eigen::Matrix3Xd& X,
-                           const Eigen::VectorXd& mass) {
-  const int first = body.first_vertex, count = body.ordered.vertices();
-  if (law.energy->kind == Energy::Kind::density)
-    return Potential::on_mesh(law.energy->name, kernel, body.ordered, first, law.params, body.quadrature);
-  if (law.energy->geometry == "edge")
-    return Potential::on_stencils(law.energy->name, kernel, edges_of(body), X, law.params, {});
-  const std::vector<int> points = points_of(first, count);
-  return Potential::on_stencils(law.energy->name, kernel, points, X, law.params,
-                                point_masses(*law.energy, mass, points));
-}
-
-// Densities of solids live on solids, and so on.
-void check_geometries(const Scene& scene, const std::vector<std::vector<UsedLaw>>& used,
-                      const std::vector<Body>& bodies) {
-  const char* geometries[] = {"point", "line", "membrane", "solid"};
-  for (size_t i = 0; i < used.size(); ++i) {
-    const Element element = bodies[i].ordered.element;
-    const std::string geometry = geometries[dimension_of(element)];
-    for (size_t k = 0; k < used[i].size(); ++k) {
-      const Energy& energy = *used[i][k].energy;
-      if (energy.kind != Energy::Kind::density || energy.geometry == geometry) continue;
-      throw SourceError(scene.objects[i].energies[k].at("law"),
-                        fmt::format("{} is a density of a {}; object '{}' is a {} of {} cells", energy.name,
-                                    energy.geometry, bodies[i].name, geometry, name_of(element)));
-    }
-  }
-}
-
 // Vertices that have mass: not those of obstacles, nor those that affine bodies carry or that hold one in its place.
 std::vector<int> heavy_points(const Eigen::VectorXd& mass) {
   std::vector<int> out;
@@ -144,13 +71,10 @@ std::vector<int> heavy_points(const Eigen::VectorXd& mass) {
   return out;
 }
 
-void add_object(const SceneObject& object, const std::vector<UsedLaw>& laws, const Body& body,
-                const UsedKernels& kernels, BuiltScene& out) {
-  for (size_t i = 0; i < laws.size(); ++i) try {
-      out.system->add(object_potential(laws[i], kernels.get(*laws[i].energy), body, out.start.x, out.mass));
-    } catch (const InputError& bad) {
-      throw SourceError(object.energies[i].place, fmt::format("object '{}': {}", object.name, bad.what()));
-    }
+std::vector<double> masses_of(const Eigen::VectorXd& mass, const std::vector<int>& points) {
+  std::vector<double> out;
+  for (const int v : points) out.push_back(mass[v]);
+  return out;
 }
 
 void add_world(const Scene& scene, const WorldLaws& world, const UsedKernels& kernels, BuiltScene& out) {
@@ -158,11 +82,11 @@ void add_world(const Scene& scene, const WorldLaws& world, const UsedKernels& ke
   const std::vector<int> points = heavy_points(out.mass);
   if (world.orthogonality != nullptr) add_affine_potentials(scene, kernels.get(*world.orthogonality), out);
   out.system->add(Potential::on_stencils("inertia", kernels.get(*world.inertia), points, X, {},
-                                         point_masses(*world.inertia, out.mass, points)));
+                                         {{"mass", masses_of(out.mass, points)}}));
   if (world.gravity != nullptr)
     out.system->add(Potential::on_stencils("gravity", kernels.get(*world.gravity), points, X,
                                            {{"g", {scene.gravity.begin(), scene.gravity.end()}}},
-                                           point_masses(*world.gravity, out.mass, points)));
+                                           {{"mass", masses_of(out.mass, points)}}));
   add_contact(scene, world.contact, kernels, out);
 }
 
@@ -281,7 +205,7 @@ BuiltScene build_scene(const Scene& scene, const Catalogue& catalogue, const Ker
     Stopwatch watch(out.seconds.meshes);
     for (const SceneObject& object : scene.objects) out.bodies.push_back(load_body(object, folder));
     for (const SceneObstacle& obstacle : scene.obstacles) out.bodies.push_back(load_obstacle(obstacle, folder));
-    check_geometries(scene, used, out.bodies);
+    for (size_t i = 0; i < used.size(); ++i) check_geometry(scene.objects[i], used[i], out.bodies[i]);
     lay_out(scene, out);
     out.probes = probes_of(scene, out);
     check_start(scene, out.bodies);
@@ -298,7 +222,7 @@ BuiltScene build_scene(const Scene& scene, const Catalogue& catalogue, const Ker
   }
   {
     Stopwatch watch(out.seconds.setup);
-    for (size_t i = 0; i < used.size(); ++i) add_object(scene.objects[i], used[i], out.bodies[i], kernels, out);
+    for (size_t i = 0; i < used.size(); ++i) add_object(scene.objects[i], used[i], kernels, i, out);
     add_world(scene, world, kernels, out);
     if (out.surfaces != nullptr) check_surface_start(scene, out, report);
   }

@@ -36,11 +36,15 @@ Section<SceneObstacle> obstacle_section() {
                  {}};
   out.keys =
       shape_keys<T>("mesh file relative to the scene: a surface (.obj, .stl, .ply), open or closed, or cells (.msh)");
+  out.keys.push_back(choice_key("element", &T::element, {"hex8", "tri3", "edge2"},
+                                "of a box: the block, or without thickness its rectangle z = 0 or its edge along x"));
   out.keys.push_back(vector_key("center", &T::center, "m", any, Need::optional,
                                 "what rotations of the script are about; moves along"));
   out.keys.push_back(tables_key("key", &T::motion, motion_section<T>, Need::optional, "script of its motion"));
   out.check = [](const std::string&, const T& obstacle) {
     check_shape(obstacle);
+    if (obstacle.wrote("element") && !obstacle.box)
+      throw SourceError(obstacle.at("element"), "'element' has no use here: it is for an obstacle that is a box");
     check_motion(obstacle.motion);
   };
   return out;

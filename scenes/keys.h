@@ -44,7 +44,7 @@ struct Section {
   std::vector<Key<T>> keys;
   // Takes keys that are not in the list; without it they are errors.
   std::function<void(const toml::key&, const toml::node&, const std::string& file, T&)> other;
-  std::function<void(const std::string& file, const T&)> check;  // what concerns several keys
+  std::function<void(const std::string& file, T&)> check;  // what concerns several keys
 };
 
 template <class T>
@@ -107,6 +107,10 @@ std::string print_value(const std::optional<S>& v) {
   return v ? print_value(*v) : "";
 }
 
+inline std::string print_value(const std::vector<Vector3>& v) {
+  return v.empty() ? "none" : fmt::format("{}", v.size());
+}
+
 enum class Need { required, optional };
 
 // The shared part: `read` turns a node and the key's rule into the member's value. `absent` is printed as the default
@@ -134,6 +138,12 @@ template <class T>
 Key<T> vector_key(const std::string& name, Vector3 T::*member, const std::string& unit, Range range, Need need,
                   const std::string& help) {
   return key_of<T>("3 numbers", name, member, unit, range, need, help, "", read_vector3);
+}
+
+template <class T>
+Key<T> points_key(const std::string& name, std::vector<Vector3> T::*member, const std::string& unit, Need need,
+                  const std::string& help, const std::string& absent) {
+  return key_of<T>("points of 3 numbers", name, member, unit, Range{}, need, help, absent, read_points);
 }
 
 template <class T, class M>

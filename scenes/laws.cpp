@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 
 namespace ergon {
 namespace {
@@ -36,12 +35,8 @@ std::vector<double> checked_values(const Energy& energy, const Symbol& param, co
   return out;
 }
 
-// X0 is filled in for a dof x0.
-bool is_rest_position(const Energy& energy, const Symbol& rest) {
-  std::string dof = rest.name;
-  dof[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(dof[0])));
-  const Symbol* found = energy.find(dof);
-  return dof != rest.name && found != nullptr && found->role == Role::dof && rest.shape == found->shape;
+bool is_thickness(const Symbol& param) {
+  return param.name == "h" && param.shape.scalar() && to_string(param.unit) == "m";
 }
 
 }  // namespace
@@ -69,7 +64,7 @@ const Energy& Laws::get(const EnergyUse& use) {
   return found->second;
 }
 
-Parameters checked_params(const Energy& energy, const EnergyUse& use) {
+Parameters checked_params(const Energy& energy, const EnergyUse& use, double thickness) {
   std::vector<std::string> names;
   for (const Symbol* param : energy.with_role(Role::param)) names.push_back(param->name);
   for (const auto& [name, written] : use.params)
@@ -79,6 +74,10 @@ Parameters checked_params(const Energy& energy, const EnergyUse& use) {
   Parameters out;
   for (const Symbol* param : energy.with_role(Role::param)) {
     auto written = use.params.find(param->name);
+    if (written == use.params.end() && thickness > 0 && is_thickness(*param)) {
+      out[param->name] = {thickness};
+      continue;
+    }
     if (written == use.params.end())
       throw SourceError(use.place, fmt::format("{} needs the param '{}': {}, in {}{}", energy.name, param->name,
                                                param->help.empty() ? "a " + to_string(param->shape) : param->help,
@@ -86,37 +85,6 @@ Parameters checked_params(const Energy& energy, const EnergyUse& use) {
     out[param->name] = checked_values(energy, *param, written->second);
   }
   return out;
-}
-
-void check_supported(const Energy& energy, const EnergyUse& use) {
-  const Place& place = use.at("law");
-  const bool density = energy.kind == Energy::Kind::density;
-  if (density) return;
-  if (energy.geometry != "point" && energy.geometry != "edge")
-    throw SourceError(place, fmt::format("{} is an energy of a {}; an object carries densities and energies of points "
-                                         "and edges",
-                                         energy.name, energy.geometry));
-  if (!energy.cases.empty() || !energy.active.empty())
-    throw SourceError(place, fmt::format("{} acts only under its conditions (case, active), as contact does; an object "
-                                         "carries energies that always act",
-                                         energy.name));
-  for (const Symbol* rest : energy.with_role(Role::rest)) {
-    const bool mass = rest->name == "mass" && energy.geometry == "point" && rest->shape.scalar();
-    if (!mass && !is_rest_position(energy, *rest))
-      throw SourceError(place,
-                        fmt::format("a scene cannot supply the rest data '{}' of {}: it knows rest positions (X0 "
-                                    "for a dof x0) and the mass of a point",
-                                    rest->name, energy.name));
-  }
-  for (const Symbol* lag : energy.with_role(Role::lag)) {
-    const auto of_point = [&](const Symbol* dof) {
-      return lag->name == dof->name + "hat" || lag->name == dof->name + "lag";
-    };
-    const std::vector<const Symbol*> dofs = energy.with_role(Role::dof);
-    if (lag->name != "dt" && std::none_of(dofs.begin(), dofs.end(), of_point))
-      throw SourceError(place, fmt::format("a scene does not renew the lag '{}' of {}: it knows dt, xhat and xlag",
-                                           lag->name, energy.name));
-  }
 }
 
 }  // namespace ergon

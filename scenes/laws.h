@@ -28,13 +28,9 @@ class Laws {
   std::map<std::string, Energy> read_;  // by the name or path that was written, or the place of the text
 };
 
-// The values of all params of the energy in SI. Throws SourceError at the scene's line for a param that is missing,
-// unknown (with the nearest), of the wrong size or unit, or outside its declared range.
-Parameters checked_params(const Energy& energy, const EnergyUse& use);
-
-// Throws SourceError at the scene's line unless an object can carry the energy: densities of solids, and stencils of
-// one point or of edges, with rest data (`mass` of a point, rest positions) and lags (`dt`, `xhat`, `xlag`) that a
-// scene supplies.
-void check_supported(const Energy& energy, const EnergyUse& use);
+// The values of all params of the energy in SI. A param `h` in m that is left out is the thickness of the object, where
+// that has one (not 0), in m. Throws SourceError at the scene's line for a param that is missing, unknown (with the
+// nearest), of the wrong size or unit, or outside its declared range.
+Parameters checked_params(const Energy& energy, const EnergyUse& use, double thickness);
 
 }  // namespace ergon

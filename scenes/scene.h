@@ -82,7 +82,13 @@ struct TorusSource : Located {
   int across = 12;
 };
 
-// Where the shape of an object or obstacle comes from and where it starts. One of the first five is given.
+struct CurveSource : Located {
+  std::vector<Vector3> points;  // m
+  bool closed = false;
+  std::optional<int> cells;  // of a smooth curve through the points; absent: straight from point to point
+};
+
+// Where the shape of an object or obstacle comes from and where it starts. One source is given.
 struct SceneShape : Located {
   std::string name;
   std::string mesh;              // path relative to the scene file
@@ -90,6 +96,8 @@ struct SceneShape : Located {
   std::optional<SphereSource> sphere;
   std::optional<TubeSource> tube;
   std::optional<TorusSource> torus;
+  std::optional<CurveSource> curve;
+  std::vector<Vector3> points;  // m, loose
   double scale = 1;
   Vector3 rotate = {0, 0, 0};     // rad, about x, then y, then z (fixed axes)
   Vector3 translate = {0, 0, 0};  // m
@@ -110,6 +118,12 @@ struct ScriptedBox : BoxSelector {
   std::vector<MotionKey> motion;
 };
 
+// Objects like the one before, each displaced against it.
+struct Copies : Located {
+  int count = 1;
+  Vector3 translate = {0, 0, 0};  // m
+};
+
 struct SceneObject : SceneShape {
   std::string kinematics = "free";
   double stiffness = 1e8;  // Pa, of an affine body against strains
@@ -119,17 +133,23 @@ struct SceneObject : SceneShape {
   double density = 0;             // kg/m^3
   double thickness = 0;           // m, of a membrane
   double cross_section = 0;       // m^2, of a line
+  double volume = 0;              // m^3, of a loose point
   Vector3 velocity = {0, 0, 0};   // m/s
   std::vector<EnergyUse> energies;
   std::vector<BoxSelector> fixed;
   std::vector<ScriptedBox> scripted;
+  std::optional<Copies> copies;  // none once a scene has been read: each is an object of its own
+
+  // A surface is filled with tetrahedra unless its triangles are asked for.
+  bool keeps_surface() const { return element == "tri3" || element == "tri6"; }
 
   bool affine() const { return kinematics == "affine"; }
 };
 
 // A surface without degrees of freedom, at rest or moved by a script.
 struct SceneObstacle : SceneShape {
-  Vector3 center = {0, 0, 0};  // m, that rotations are about; moves along
+  std::string element = "hex8";  // of a box
+  Vector3 center = {0, 0, 0};    // m, that rotations are about; moves along
   std::vector<MotionKey> motion;
 };
 

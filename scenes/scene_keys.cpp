@@ -175,6 +175,40 @@ std::vector<std::string> element_names() {
   return {"tet4", "tet10", "hex8", "hex20", "hex27", "prism6", "tri3", "tri6", "quad4", "quad9", "edge2", "edge3"};
 }
 
+Section<Copies> copies_section() {
+  using T = Copies;
+  Section<T> out{
+      "[object.copies]",
+      "The object stands several times in the scene, as NAME_1, NAME_2 and so on, each displaced against the "
+      "one before.",
+      {},
+      {},
+      {}};
+  out.keys = {
+      integer_key("count", &T::count, {1, 10000, false, false}, Need::required, "objects, the first one included"),
+      vector_key("translate", &T::translate, "m", any, Need::required, "displacement from one to the next"),
+  };
+  return out;
+}
+
+// Puts copies in place of what is to be copied.
+void expand_copies(Scene& scene) {
+  std::vector<SceneObject> objects;
+  for (const SceneObject& object : scene.objects) {
+    if (!object.copies) {
+      objects.push_back(object);
+      continue;
+    }
+    for (int i = 0; i < object.copies->count; ++i) {
+      SceneObject& copy = objects.emplace_back(object);
+      copy.copies.reset();
+      copy.name = fmt::format("{}_{}", object.name, i + 1);
+      for (size_t axis = 0; axis < 3; ++axis) copy.translate[axis] += i * object.copies->translate[axis];
+    }
+  }
+  scene.objects = std::move(objects);
+}
+
 // What a body that does not bend has no use for.
 void check_affine(const SceneObject& object) {
   for (const auto& [key, why] :
@@ -189,6 +223,9 @@ void check_affine(const SceneObject& object) {
 
 void check_object(const std::string&, const SceneObject& object) {
   check_shape(object);
+  if (object.copies && (!object.fixed.empty() || !object.scripted.empty()))
+    throw SourceError(object.at("copies"),
+                      "copies have no fixed or scripted vertices, as boxes do not move along; write the objects out");
   if (object.affine()) return check_affine(object);
   if (object.wrote("stiffness"))
     throw SourceError(object.at("stiffness"),
@@ -197,12 +234,18 @@ void check_object(const std::string&, const SceneObject& object) {
     throw SourceError(object.place, "[[object]] lacks [[object.energy]]: what the object is made of");
   const bool surface =
       (object.wrote("mesh") && !object.mesh.ends_with(".msh")) || object.sphere || object.tube || object.torus;
-  if (object.wrote("max_edge") && !surface)
+  const bool filled = surface && !object.keeps_surface();
+  if (object.wrote("max_edge") && !filled)
     throw SourceError(object.at("max_edge"),
                       "'max_edge' has no use here: it is for surface meshes (.obj, .stl, .ply), which are filled with "
                       "tetrahedra");
-  if (object.wrote("element") && surface && object.element != "tet4" && object.element != "tet10")
-    throw SourceError(object.at("element"), "a surface is filled with tetrahedra: 'element' must be tet4 or tet10");
+  if (!object.wrote("element")) return;
+  const auto refuse = [&](const char* why) { throw SourceError(object.at("element"), why); };
+  if (filled && object.element != "tet4" && object.element != "tet10")
+    refuse("a surface is filled with tetrahedra, or kept as a shell: 'element' must be tet4, tet10, tri3 or tri6");
+  if (object.curve && object.element != "edge2" && object.element != "edge3")
+    refuse("a curve is made of lines: 'element' must be edge2 or edge3");
+  if (object.wrote("points")) refuse("'element' has no use here: loose points have none");
 }
 
 Section<SceneObject> object_section() {
@@ -220,20 +263,24 @@ Section<SceneObject> object_section() {
                  "continued from the surface"),
       choice_key(
           "element", &T::element, element_names(),
-          "element of a box, or of a filled surface; membranes (tri, quad) fill the box's rectangle z = 0, lines "
-          "(edge) its edge along x"),
+          "element of a box or a surface; membranes (tri, quad) fill a box's rectangle z = 0, lines (edge) its edge "
+          "along x; a surface is filled with tetrahedra (tet4, tet10), or kept as a shell (tri3, tri6); a curve is of "
+          "edge2, unless edge3 is wanted"),
       integer_key("quadrature", &T::quadrature, {0, kMaxExactness, false, false}, Need::optional,
                   "degree of polynomials that the energies' quadrature integrates exactly on an element",
                   "full integration of the element's stiffness"),
       number_key("density", &T::density, "kg/m^3", positive, Need::required, "mass per rest volume"),
-      number_key("thickness", &T::thickness, "m", positive, Need::optional, "of a membrane, for its mass",
-                 "required for membranes"),
+      number_key("thickness", &T::thickness, "m", positive, Need::optional,
+                 "of a membrane, for its mass and for laws whose param `h` (m) is left out", "required for membranes"),
       number_key("cross_section", &T::cross_section, "m^2", positive, Need::optional, "of a line, for its mass",
                  "required for lines"),
+      number_key("volume", &T::volume, "m^3", positive, Need::optional, "of each loose point, for its mass",
+                 "required for loose points"),
       vector_key("velocity", &T::velocity, "m/s", any, Need::optional, "velocity at the start"),
       tables_key("energy", &T::energies, energy_section, Need::optional, "what a free object is made of; at least one"),
       tables_key("fixed", &T::fixed, fixed_section, Need::optional, "vertices that never move"),
       tables_key("scripted", &T::scripted, scripted_section, Need::optional, "vertices that follow a script"),
+      table_key("copies", &T::copies, copies_section, "the object stands in the scene several times"),
   };
   const std::vector<Key<T>> shape = shape_keys<T>(
       "mesh file relative to the scene: cells (.msh), or a closed surface (.obj, .stl, .ply) that is filled with "
@@ -296,7 +343,10 @@ Section<Scene> scene_section() {
       tables_key("probe", &T::probes, probe_section, Need::optional, "vertices whose paths are written"),
       table_key("contact", &T::contact, contact_section, "surfaces collide, with one another and themselves"),
   };
-  out.check = [](const std::string&, const T& scene) { check_names(scene); };
+  out.check = [](const std::string&, T& scene) {
+    expand_copies(scene);
+    check_names(scene);
+  };
   return out;
 }
 

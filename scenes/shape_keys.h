@@ -100,6 +100,20 @@ Section<TorusSource> torus_section() {
 }
 
 template <class Owner>
+Section<CurveSource> curve_section() {
+  using T = CurveSource;
+  Section<T> out{
+      fmt::format("[{}.curve]", table_name<Owner>()), "A line through points, as rods and wires have it.", {}, {}, {}};
+  out.keys = {
+      points_key("points", &T::points, "m", Need::required, "that the line goes through", ""),
+      boolean_key("closed", &T::closed, "it goes on from the last point to the first"),
+      integer_key("cells", &T::cells, {1, 1e7, false, false}, Need::optional,
+                  "edges of equal length along a smooth curve through the points", "straight from point to point"),
+  };
+  return out;
+}
+
+template <class Owner>
 Section<MotionKey> motion_section() {
   using T = MotionKey;
   Section<T> out{std::is_same_v<Owner, SceneObject> ? "[[object.scripted.key]]" : "[[obstacle.key]]",
@@ -130,11 +144,14 @@ template <class T>
 std::vector<Key<T>> shape_keys(const std::string& mesh_help) {
   return {
       text_key<T>("name", &T::name, Need::required, "a name of its own, used in messages and results"),
-      text_key<T>("mesh", &T::mesh, Need::optional, mesh_help, "give `mesh`, `box`, `sphere`, `tube` or `torus`"),
+      text_key<T>("mesh", &T::mesh, Need::optional, mesh_help,
+                  "give `mesh`, `box`, `sphere`, `tube`, `torus`, `curve` or `points`"),
       table_key<T, BoxSource>("box", &T::box, box_section<T>, "instead of a mesh file"),
       table_key<T, SphereSource>("sphere", &T::sphere, sphere_section<T>, "instead of a mesh file"),
       table_key<T, TubeSource>("tube", &T::tube, tube_section<T>, "instead of a mesh file"),
       table_key<T, TorusSource>("torus", &T::torus, torus_section<T>, "instead of a mesh file"),
+      table_key<T, CurveSource>("curve", &T::curve, curve_section<T>, "instead of a mesh file"),
+      points_key<T>("points", &T::points, "m", Need::optional, "loose points, instead of a mesh file", "none"),
       number_key<T, double>("scale", &T::scale, "1", key_ranges::positive, Need::optional,
                             "factor on the mesh's coordinates"),
       vector_key<T>("rotate", &T::rotate, "rad", key_ranges::any, Need::optional,
@@ -149,18 +166,18 @@ std::vector<Key<T>> shape_keys(const std::string& mesh_help) {
 // Exactly one source, and a mesh file of a known kind.
 template <class T>
 void check_shape(const T& shape) {
-  const std::vector<std::pair<const char*, bool>> sources = {{"mesh", shape.wrote("mesh")},
-                                                             {"box", shape.box.has_value()},
-                                                             {"sphere", shape.sphere.has_value()},
-                                                             {"tube", shape.tube.has_value()},
-                                                             {"torus", shape.torus.has_value()}};
+  const std::vector<std::pair<const char*, bool>> sources = {
+      {"mesh", shape.wrote("mesh")},    {"box", shape.box.has_value()},     {"sphere", shape.sphere.has_value()},
+      {"tube", shape.tube.has_value()}, {"torus", shape.torus.has_value()}, {"curve", shape.curve.has_value()},
+      {"points", shape.wrote("points")}};
   std::vector<const char*> given;
   for (const auto& [key, is_given] : sources)
     if (is_given) given.push_back(key);
   if (given.empty())
     throw SourceError(shape.place,
                       fmt::format("{} '{}' lacks 'mesh' (a file), 'box' (size and cells), 'sphere' (radius), 'tube' "
-                                  "(inner, outer, length) or 'torus' (radius, section)",
+                                  "(inner, outer, length), 'torus' (radius, section), 'curve' (points) or 'points' "
+                                  "(loose ones)",
                                   table_name<T>(), shape.name));
   if (given.size() > 1)
     throw SourceError(shape.at(given[1]), fmt::format("{} '{}' has both '{}' and '{}'; keep one of them",

@@ -126,6 +126,16 @@ Vector3 read_vector3(const toml::node& node, const ValueRule& rule, const std::s
   return {read_number(array[0], rule, file), read_number(array[1], rule, file), read_number(array[2], rule, file)};
 }
 
+std::vector<Vector3> read_points(const toml::node& node, const ValueRule& rule, const std::string& file) {
+  const toml::array* array = node.as_array();
+  if (array == nullptr || array->empty())
+    fail(node, file,
+         fmt::format("'{}' must be an array of points, each an array of 3, found {}", rule.key, describe(node)));
+  std::vector<Vector3> points;
+  for (const toml::node& item : *array) points.push_back(read_vector3(item, rule, file));
+  return points;
+}
+
 int read_integer(const toml::node& node, const ValueRule& rule, const std::string& file) {
   auto v = node.as_integer();
   if (v == nullptr || !rule.range.contains(static_cast<double>(v->get())) || v->get() > std::numeric_limits<int>::max())

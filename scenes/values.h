@@ -32,6 +32,7 @@ ParamValue read_param(const toml::key& key, const toml::node& node, const std::s
 
 double read_number(const toml::node& node, const ValueRule& rule, const std::string& file);
 Vector3 read_vector3(const toml::node& node, const ValueRule& rule, const std::string& file);
+std::vector<Vector3> read_points(const toml::node& node, const ValueRule& rule, const std::string& file);
 int read_integer(const toml::node& node, const ValueRule& rule, const std::string& file);
 std::array<int, 3> read_integer3(const toml::node& node, const ValueRule& rule, const std::string& file);
 bool read_boolean(const toml::node& node, const ValueRule& rule, const std::string& file);

@@ -5,6 +5,7 @@
 
 #include "runtime/error.h"
 #include "runtime/lanes/lanes.h"
+#include "runtime/mesh/mesh_stencils.h"
 #include "tools/assignments.h"
 #include "tools/bench.h"
 #include "tools/choices.h"

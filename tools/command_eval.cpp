@@ -11,6 +11,7 @@
 #include "runtime/error.h"
 #include "runtime/lanes/lanes.h"
 #include "runtime/mesh/mesh_import.h"
+#include "runtime/mesh/mesh_stencils.h"
 #include "symbolic/reference.h"
 #include "tools/assignments.h"
 #include "tools/choices.h"
@@ -20,7 +21,6 @@
 #include "tools/positions.h"
 #include "tools/problem.h"
 #include "tools/rows.h"
-#include "tools/stencils.h"
 
 namespace ergon {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "runtime/error.h"
 #include "runtime/mesh/mesh_build.h"
-#include "tools/stencils.h"
+#include "runtime/mesh/mesh_stencils.h"
 
 namespace ergon {
 

@@ -1,63 +1,10 @@
 #include "tools/stencils.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <array>
-#include <map>
-
-#include "runtime/error.h"
-#include "runtime/mesh/element_faces.h"
+#include "runtime/mesh/mesh_stencils.h"
 #include "tools/sample.h"
 
 namespace ergon {
 namespace {
-
-std::vector<int> edges_of(const Mesh& mesh) {
-  const std::vector<std::array<int, 2>> corners = corner_edges(mesh.element);
-  const int nodes = nodes_of(mesh.element);
-  std::vector<std::array<int, 2>> edges;
-  for (size_t start = 0; start < mesh.cells.size(); start += static_cast<size_t>(nodes)) {
-    for (const auto& [a, b] : corners) {
-      const int va = mesh.cells[start + static_cast<size_t>(a)], vb = mesh.cells[start + static_cast<size_t>(b)];
-      edges.push_back({std::min(va, vb), std::max(va, vb)});
-    }
-  }
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  std::vector<int> flat;
-  for (const auto& [a, b] : edges) flat.insert(flat.end(), {a, b});
-  return flat;
-}
-
-std::vector<int> vertices_of(const Mesh& mesh) {
-  std::vector<int> vertices = mesh.cells;
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  return vertices;
-}
-
-const std::vector<int>& cells_of(std::string_view geometry, const Mesh& mesh, Element element) {
-  if (mesh.element == element) return mesh.cells;
-  throw InputError(fmt::format("'{}' stencils are made from a mesh of {} elements; this one has {}", geometry,
-                               name_of(element), name_of(mesh.element)));
-}
-
-// An edge from a to b of one triangle and from b to a of its neighbour; an edge of more triangles makes no hinge.
-std::vector<int> hinges_of(const std::vector<int>& triangles) {
-  std::map<std::array<int, 2>, std::vector<int>> opposite;  // directed edge -> third corners
-  for (size_t start = 0; start < triangles.size(); start += 3) {
-    const int* t = triangles.data() + start;
-    for (int i = 0; i < 3; ++i) opposite[{t[i], t[(i + 1) % 3]}].push_back(t[(i + 2) % 3]);
-  }
-  std::vector<int> flat;
-  for (const auto& [edge, third] : opposite) {
-    const auto other = opposite.find({edge[1], edge[0]});
-    if (edge[0] > edge[1] || third.size() != 1 || other == opposite.end() || other->second.size() != 1) continue;
-    flat.insert(flat.end(), {edge[0], edge[1], third[0], other->second[0]});
-  }
-  return flat;
-}
 
 // Sheets one above the other, every second one shifted against its neighbours by a part of a cell, so that vertices lie
 // over the inside of triangles and edges cross inside.
@@ -135,17 +82,6 @@ std::vector<int> shortened(const std::vector<int>& stencils, size_t kept) {
 
 }  // namespace
 
-std::vector<int> stencils_on_mesh(std::string_view geometry, const Mesh& mesh) {
-  if (geometry == "point") return vertices_of(mesh);
-  if (geometry == "edge") return edges_of(mesh);
-  if (geometry == "triangle") return cells_of(geometry, mesh, Element::tri3);
-  if (geometry == "hinge") return hinges_of(cells_of(geometry, mesh, Element::tri3));
-  if (geometry == "tetrahedron") return cells_of(geometry, mesh, Element::tet4);
-  throw InputError(fmt::format(
-      "no stencils '{}' can be made from a mesh; 'point', 'edge', 'triangle', 'hinge' and 'tetrahedron' can",
-      geometry));
-}
-
 StencilSample sample_stencils(std::string_view geometry, int cells) {
   if (geometry == "point" || geometry == "edge" || geometry == "tetrahedron") {
     Mesh mesh = sample_mesh(Element::tet4, cells);
@@ -163,7 +99,7 @@ StencilSample sample_stencils(std::string_view geometry, int cells) {
   } else if (geometry == "edge_edge") {
     stencils = sheets.edge_edges();
   } else {
-    stencils = stencils_on_mesh(geometry, sheets.mesh);
+    stencils = stencils_on_mesh(geometry == "corner" ? "triangle" : geometry, sheets.mesh);
   }
   return {std::move(sheets.mesh), std::move(stencils)};
 }

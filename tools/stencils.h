@@ -1,5 +1,5 @@
 #pragma once
-// Stencils of every geometry: those that a mesh has, and samples to measure kernels on. Deterministic.
+// Stencils of every geometry to measure kernels on. Deterministic.
 
 #include <string_view>
 #include <vector>
@@ -7,12 +7,6 @@
 #include "runtime/mesh/mesh.h"
 
 namespace ergon {
-
-// The points of the stencils of a geometry on a mesh, one stencil after the other: "point": each vertex that a cell
-// names; "edge": each edge between corners of cells, once, lower vertex first; "triangle" and "tetrahedron": the cells;
-// "hinge": two triangles that share an edge, in the order of `dihedral`. Throws InputError for other geometries, and
-// for cells of another element.
-std::vector<int> stencils_on_mesh(std::string_view geometry, const Mesh& mesh);
 
 struct StencilSample {
   Mesh mesh;  // where the points are
@@ -22,8 +16,8 @@ struct StencilSample {
 // About 3*cells^3 stencils of the geometry in a cube of 1 m. Those of pairs (contact) lie between neighbours among
 // cells + 1 sheets of triangles, 1/cells apart: "point_triangle": each vertex with the triangles that it projects into,
 // below and above; "point_edge" and "point_point": with an edge and a corner of these; "edge_edge": edges that cross in
-// projection. "hinge" and "triangle": of the sheets; "point", "edge" and "tetrahedron": of the cube cut into
-// tetrahedra. Throws InputError for cells < 1 and other geometries.
+// projection. "hinge", "triangle" and "corner" (three points of a triangle): of the sheets; "point", "edge" and
+// "tetrahedron": of the cube cut into tetrahedra. Throws InputError for cells < 1 and other geometries.
 StencilSample sample_stencils(std::string_view geometry, int cells);
 
 }  // namespace ergon

@@ -34,8 +34,9 @@ std::uint64_t key_of(int a) { return static_cast<std::uint64_t>(a); }
 // The pairs that one thread looks at.
 class Finder {
  public:
-  Finder(const CollisionSurface& surface, const Matrix3Xd& x, const Matrix3Xd& X, double dhat, FoundStencils& found)
-      : surface_(surface), x_(x), X_(X), dhat_(dhat), found_(found) {}
+  Finder(const CollisionSurface& surface, const Matrix3Xd& x, const Matrix3Xd& X, double dhat, FoundStencils& found,
+         LoweredStencils& lowered)
+      : surface_(surface), x_(x), X_(X), dhat_(dhat), found_(found), lowered_(lowered) {}
 
   // Up to kDistances pairs.
   void point_triangles(const std::array<int, 2>* pairs, int count) {
@@ -51,7 +52,7 @@ class Finder {
         const PointTriangleDistance d = point_triangle_distance(at(p), at(t[0]), at(t[1]), at(t[2]));
         gap2 = d.gap2, part = d.part;
       }
-      if (near(gap2, p, t[0])) {
+      if (near(RestOffsets::point_triangle, pairs[i], gap2, p, t[0])) {
         weight_ = weight_of_point(point);
         add_point_triangle(point, triangle, part);
       }
@@ -69,7 +70,7 @@ class Finder {
         const EdgeEdgeDistance d = edge_edge_distance(at(a[0]), at(a[1]), at(b[0]), at(b[1]));
         gap2 = d.gap2, parts = d.part_a | d.part_b << 2;
       }
-      if (near(gap2, a[0], b[0])) {
+      if (near(RestOffsets::edge_edge, pairs[i], gap2, a[0], b[0])) {
         weight_ = (weight_of_edge(pairs[i][0]) + weight_of_edge(pairs[i][1])) / 2;
         add_edge_edge(pairs[i][0], pairs[i][1], parts & 3u, parts >> 2, room_.sine2[i]);
       }
@@ -77,29 +78,29 @@ class Finder {
   }
 
   void point_edges(const std::array<int, 2>* pairs, int count) {
-    for (int i = 0; i < count; ++i) point_edge(pairs[i][0], pairs[i][1]);
+    for (int i = 0; i < count; ++i) point_edge(pairs[i]);
   }
   void point_points(const std::array<int, 2>* pairs, int count) {
-    for (int i = 0; i < count; ++i) point_point(pairs[i][0], pairs[i][1]);
+    for (int i = 0; i < count; ++i) point_point(pairs[i]);
   }
 
   double smallest_gap() const { return smallest_; }
 
  private:
-  void point_edge(int point, int edge) {
-    const int p = surface_.points[static_cast<size_t>(point)];
-    const auto& e = surface_.edges[static_cast<size_t>(edge)];
+  void point_edge(const std::array<int, 2>& pair) {
+    const int p = surface_.points[static_cast<size_t>(pair[0])];
+    const auto& e = surface_.edges[static_cast<size_t>(pair[1])];
     const PointEdgeDistance d = point_edge_distance(at(p), at(e[0]), at(e[1]));
-    if (!near(d.gap2, p, e[0])) return;
-    weight_ = weight_of_point(point);
+    if (!near(RestOffsets::point_edge, pair, d.gap2, p, e[0])) return;
+    weight_ = weight_of_point(pair[0]);
     if (d.part == 3) return add_point_edge(p, e[0], e[1]);
     add_point_point(p, e[d.part - 1]);
   }
 
-  void point_point(int point_a, int point_b) {
-    const int p = surface_.points[static_cast<size_t>(point_a)], q = surface_.points[static_cast<size_t>(point_b)];
-    if (!near((x_.col(p) - x_.col(q)).squaredNorm(), p, q)) return;
-    weight_ = (weight_of_point(point_a) + weight_of_point(point_b)) / 2;
+  void point_point(const std::array<int, 2>& pair) {
+    const int p = surface_.points[static_cast<size_t>(pair[0])], q = surface_.points[static_cast<size_t>(pair[1])];
+    if (!near(RestOffsets::point_point, pair, (x_.col(p) - x_.col(q)).squaredNorm(), p, q)) return;
+    weight_ = (weight_of_point(pair[0]) + weight_of_point(pair[1])) / 2;
     add_point_point(p, q);
   }
 
@@ -112,8 +113,10 @@ class Finder {
 
   Vector3d at(int vertex) const { return x_.col(vertex); }
 
-  bool near(double gap2, int p, int q) {
-    const double offset = surface_.offset(object_of(p), object_of(q));
+  bool near(RestOffsets::Kind kind, const std::array<int, 2>& pair, double gap2, int p, int q) {
+    const int object_p = object_of(p), object_q = object_of(q);
+    number_ = object_p == object_q && !surface_.rest_offsets.empty() ? surface_.rest_offsets.number(kind, pair) : 0;
+    const double offset = number_ > 0 ? surface_.rest_offsets.lowered(number_) : surface_.offset(object_p, object_q);
     const double limit = dhat_ + offset, smallest = smallest_ + offset;
     if (smallest >= 0 && gap2 < smallest * smallest) smallest_ = std::sqrt(gap2) - offset;
     return gap2 < limit * limit;
@@ -125,12 +128,19 @@ class Finder {
     return (X_.col(edge[1]) - X_.col(edge[0])).squaredNorm();
   }
 
+  void add(Case which, int bin, std::uint64_t key) {
+    if (number_ > 0)
+      lowered_[which].push_back({bin, number_, key, weight_});
+    else
+      found_[which].push_back({bin, weight_, key});
+  }
+
   void add_point_triangle(int point, int triangle, unsigned part) {
     const int p = surface_.points[static_cast<size_t>(point)];
     const auto& t = surface_.triangles[static_cast<size_t>(triangle)];
     switch (part) {
       case 7:
-        return found_[kPointTriangle].push_back({point, weight_, key_of(triangle)});
+        return add(kPointTriangle, point, key_of(triangle));
       case 3:
       case 5:
       case 6:
@@ -142,29 +152,28 @@ class Finder {
 
   // sine2: |cross(a, b)|^2, m^4.
   void add_edge_edge(int edge_a, int edge_b, unsigned part_a, unsigned part_b, double sine2) {
-    if (part_a == 3 && part_b == 3) return found_[kEdgeEdge].push_back({edge_a, weight_, key_of(edge_b)});
+    if (part_a == 3 && part_b == 3) return add(kEdgeEdge, edge_a, key_of(edge_b));
     const auto &a = surface_.edges[static_cast<size_t>(edge_a)], &b = surface_.edges[static_cast<size_t>(edge_b)];
     const size_t end_a = part_a - 1, end_b = part_b - 1;
     if (sine2 < kMollified * rest_length2(a) * rest_length2(b)) {
       const std::uint64_t key = key_of(edge_b) << 2;
-      if (part_a != 3 && part_b != 3)
-        return found_[kParallelPointPoint].push_back({edge_a, weight_, key | end_a << 1 | end_b});
-      return found_[kParallelPointEdge].push_back({edge_a, weight_, key | (part_a != 3 ? end_a : 2 | end_b)});
+      if (part_a != 3 && part_b != 3) return add(kParallelPointPoint, edge_a, key | end_a << 1 | end_b);
+      return add(kParallelPointEdge, edge_a, key | (part_a != 3 ? end_a : 2 | end_b));
     }
     if (part_a == 3) return add_point_edge(b[end_b], a[0], a[1]);
     if (part_b == 3) return add_point_edge(a[end_a], b[0], b[1]);
     add_point_point(a[end_a], b[end_b]);
   }
 
-  void add_point_edge(int p, int e0, int e1) { found_[kPointEdge].push_back({p, weight_, pair_key(e0, e1)}); }
-  void add_point_point(int p, int q) {
-    found_[kPointPoint].push_back({std::min(p, q), weight_, key_of(std::max(p, q))});
-  }
+  void add_point_edge(int p, int e0, int e1) { add(kPointEdge, p, pair_key(e0, e1)); }
+  void add_point_point(int p, int q) { add(kPointPoint, std::min(p, q), key_of(std::max(p, q))); }
 
   const CollisionSurface& surface_;
   const Matrix3Xd &x_, &X_;
   double dhat_;
   FoundStencils& found_;
+  LoweredStencils& lowered_;
+  std::uint32_t number_ = 0;  // of the lowered offset of the present pair, or 0
   const lanes::DistanceOperations& operations_ = lanes::distance_operations(lanes::best_lanes());
   lanes::DistanceRoom room_;
   float weight_ = 1;  // of the pair looked at
@@ -178,13 +187,21 @@ void fill(const CollisionSurface& surface, Case which, size_t bins, const Vertic
   list.vertices.clear();
   list.multiplicity.clear();
   list.offset.clear();
-  merge_stencils(active.found, which, bins, active.room, [&](int bin, std::uint64_t key, double weight) {
-    const auto stencil = vertices(static_cast<size_t>(bin), key);
+  const auto add = [&](const auto& stencil, double weight, double offset) {
     list.vertices.insert(list.vertices.end(), stencil.begin(), stencil.end());
     list.multiplicity.push_back(weight);
-    list.offset.push_back(surface.offset(surface.object[static_cast<size_t>(stencil.front())],
-                                         surface.object[static_cast<size_t>(stencil.back())]));
+    list.offset.push_back(offset);
+  };
+  merge_stencils(active.found, which, bins, active.room, [&](int bin, std::uint64_t key, double weight) {
+    const auto stencil = vertices(static_cast<size_t>(bin), key);
+    add(stencil, weight,
+        surface.offset(surface.object[static_cast<size_t>(stencil.front())],
+                       surface.object[static_cast<size_t>(stencil.back())]));
   });
+  merge_lowered(active.lowered, which, active.lowered_room,
+                [&](int bin, std::uint64_t key, double weight, std::uint32_t number) {
+                  add(vertices(static_cast<size_t>(bin), key), weight, surface.rest_offsets.lowered(number));
+                });
 }
 
 void fill_lists(const CollisionSurface& surface, ActiveSet& active) {
@@ -234,6 +251,10 @@ void fill_lists(const CollisionSurface& surface, ActiveSet& active) {
 void find_active(const CollisionSurface& surface, const Candidates& candidates, const Matrix3Xd& x, const Matrix3Xd& X,
                  double dhat, ActiveSet& active) {
   active.found.resize(std::max(active.found.size(), static_cast<size_t>(omp_get_max_threads())));
+  active.lowered.resize(active.found.size());
+  for (LoweredStencils& lowered : active.lowered) {
+    for (auto& each : lowered) each.clear();
+  }
   for (FoundStencils& found : active.found) {
     for (auto& each : found) each.clear();
   }
@@ -243,7 +264,7 @@ void find_active(const CollisionSurface& surface, const Candidates& candidates, 
 #pragma omp parallel reduction(min : smallest) if (all > kSerial)
   {
     const auto thread = static_cast<size_t>(omp_get_thread_num()), threads = static_cast<size_t>(omp_get_num_threads());
-    Finder finder(surface, x, X, dhat, active.found[thread]);
+    Finder finder(surface, x, X, dhat, active.found[thread], active.lowered[thread]);
     const auto each = [&](const std::vector<std::array<int, 2>>& pairs, const auto& call) {
       const size_t last = pairs.size() * (thread + 1) / threads;
       for (size_t i = pairs.size() * thread / threads; i < last; i += lanes::kDistances) {

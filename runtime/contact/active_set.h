@@ -1,6 +1,7 @@
 #pragma once
 // Narrow phase: the stencils that are within dhat of each other at x, by the parts that are nearest. It establishes
-// lists in which every stencil stands once, with its multiplicity, in ascending order.
+// lists in which every stencil stands once, with its multiplicity, in ascending order; those with an offset that was
+// lowered (runtime/contact/rest_offsets.h) come last, once for each offset.
 // It depends on the positions and on which pairs are within dhat, not on the order of candidates or on others among
 // them. Source: Li et al. 2020, Incremental Potential Contact, TOG 39(4): cases of distances and mollified parallel
 // edges.
@@ -35,8 +36,10 @@ struct ActiveSet {
   double smallest_gap = 0;  // m, beyond offsets, over all candidates; +inf without any
 
   // What find_active keeps from call to call.
-  std::vector<FoundStencils> found;  // per thread
+  std::vector<FoundStencils> found;      // per thread
+  std::vector<LoweredStencils> lowered;  // per thread
   MergeRoom room;
+  std::vector<LoweredStencil> lowered_room;
 };
 
 // |cross(a, b)|^2 below which edges of lengths |A| and |B| at rest are mollified, over |A|^2 |B|^2.

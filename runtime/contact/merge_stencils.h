@@ -17,7 +17,20 @@ struct StencilKey {
   std::uint64_t key;
 };
 
+// One whose offset was lowered (runtime/contact/rest_offsets.h).
+struct LoweredStencil {
+  int bin;
+  std::uint32_t offset;  // its number
+  std::uint64_t key;
+  float weight;
+  auto operator<=>(const LoweredStencil&) const = default;
+  bool is_same(const LoweredStencil& other) const {
+    return bin == other.bin && offset == other.offset && key == other.key;
+  }
+};
+
 // By case.
+using LoweredStencils = std::array<std::vector<LoweredStencil>, 6>;
 using FoundStencils = std::array<std::vector<StencilKey>, 6>;
 
 // Room that is kept from one merge to the next.
@@ -57,6 +70,22 @@ void merge_stencils(const std::vector<FoundStencils>& found, size_t which, size_
       for (; at != last && at->key == key; ++at) weight += at->weight;
       emit(static_cast<int>(bin), key, weight);
     }
+  }
+}
+
+// The same of those with lowered offsets, few as they are: emit(bin, key, weight, number of the offset), each stencil
+// once for each of its offsets, bins in ascending order.
+template <class Emit>
+void merge_lowered(const std::vector<LoweredStencils>& found, size_t which, std::vector<LoweredStencil>& room,
+                   const Emit& emit) {
+  room.clear();
+  for (const LoweredStencils& part : found) room.insert(room.end(), part[which].begin(), part[which].end());
+  std::sort(room.begin(), room.end());
+  for (auto at = room.begin(); at != room.end();) {
+    const LoweredStencil& stencil = *at;
+    double weight = 0;
+    for (; at != room.end() && at->is_same(stencil); ++at) weight += at->weight;
+    emit(stencil.bin, stencil.key, weight, stencil.offset);
   }
 }
 

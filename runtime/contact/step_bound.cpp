@@ -26,18 +26,16 @@ struct Motion {
   const Eigen::Matrix3Xd& direction;
   double kept;
 
-  double offset(int vertex_a, int vertex_b) const {
-    return surface.offset(surface.object[static_cast<size_t>(vertex_a)], surface.object[static_cast<size_t>(vertex_b)]);
-  }
   // `second`: the first vertex of the other primitive.
   template <size_t count>
-  double step(const std::array<int, count>& v, size_t second, double (*of)(const CcdQuery&), double at_most) const {
+  double step(RestOffsets::Kind kind, const Pair& pair, const std::array<int, count>& v, size_t second,
+              double (*of)(const CcdQuery&), double at_most) const {
     Eigen::Vector3d at[count], motion[count];
     for (size_t k = 0; k < count; ++k) {
       at[k] = x.col(v[k]);
       motion[k] = direction.col(v[k]);
     }
-    return of({at, motion, offset(v[0], v[second]), kept, at_most});
+    return of({at, motion, surface.offset(kind, pair, v[0], v[second]), kept, at_most});
   }
 };
 
@@ -98,31 +96,38 @@ double largest_step(const CollisionSurface& surface, const Candidates& candidate
       candidates.point_triangle, 1,
       [&](const Pair* pairs, int count, double at_most, lanes::StepRoom& room) {
         for (int i = 0; i < count; ++i) {
-          room.separation[i] = motion.offset(point(pairs[i][0]), triangle(pairs[i][1])[0]);
+          room.separation[i] =
+              surface.offset(RestOffsets::point_triangle, pairs[i], point(pairs[i][0]), triangle(pairs[i][1])[0]);
         }
         return operations.point_triangle({x.data(), direction.data(), kept, at_most}, points.data(), plain(triangles),
                                          reinterpret_cast<const int(*)[2]>(pairs), count, room);
       },
       [&](const Pair& pair, double at_most) {
         const auto& t = triangle(pair[1]);
-        return motion.step<4>({point(pair[0]), t[0], t[1], t[2]}, 1, point_triangle_step, at_most);
+        return motion.step<4>(RestOffsets::point_triangle, pair, {point(pair[0]), t[0], t[1], t[2]}, 1,
+                              point_triangle_step, at_most);
       });
   step = smallest_of_many(
       candidates.edge_edge, step,
       [&](const Pair* pairs, int count, double at_most, lanes::StepRoom& room) {
-        for (int i = 0; i < count; ++i) room.separation[i] = motion.offset(edge(pairs[i][0])[0], edge(pairs[i][1])[0]);
+        for (int i = 0; i < count; ++i) {
+          room.separation[i] =
+              surface.offset(RestOffsets::edge_edge, pairs[i], edge(pairs[i][0])[0], edge(pairs[i][1])[0]);
+        }
         return operations.edge_edge({x.data(), direction.data(), kept, at_most}, plain(edges),
                                     reinterpret_cast<const int(*)[2]>(pairs), count, room);
       },
       [&](const Pair& pair, double at_most) {
         const auto &a = edge(pair[0]), &b = edge(pair[1]);
-        return motion.step<4>({a[0], a[1], b[0], b[1]}, 2, edge_edge_step, at_most);
+        return motion.step<4>(RestOffsets::edge_edge, pair, {a[0], a[1], b[0], b[1]}, 2, edge_edge_step, at_most);
       });
   step = smallest(candidates.point_edge, 1, step, [&](const Pair& pair, double at_most) {
-    return motion.step<3>({point(pair[0]), edge(pair[1])[0], edge(pair[1])[1]}, 1, point_edge_step, at_most);
+    return motion.step<3>(RestOffsets::point_edge, pair, {point(pair[0]), edge(pair[1])[0], edge(pair[1])[1]}, 1,
+                          point_edge_step, at_most);
   });
   return smallest(candidates.point_point, 1, step, [&](const Pair& pair, double at_most) {
-    return motion.step<2>({point(pair[0]), point(pair[1])}, 1, point_point_step, at_most);
+    return motion.step<2>(RestOffsets::point_point, pair, {point(pair[0]), point(pair[1])}, 1, point_point_step,
+                          at_most);
   });
 }
 

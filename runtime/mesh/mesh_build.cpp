@@ -24,7 +24,8 @@ std::vector<BrickPart> parts_of(Element element) {
     case ReferenceShape::quadrilateral:
     case ReferenceShape::hexahedron:
       return {{0, 1, 2, 4}};
-    case ReferenceShape::triangle:
+    case ReferenceShape::triangle:  // the first side of each lies along x
+      return {{0, 1, 3, 4}, {3, 2, 0, 4}};
     case ReferenceShape::prism:
       return {{0, 1, 3, 4}, {0, 3, 2, 4}};
     case ReferenceShape::tetrahedron:
@@ -93,14 +94,8 @@ class BoxLattice {
   std::vector<int> number_;
 };
 
-}  // namespace
-
-Mesh box_mesh(Element element, const Eigen::Vector3d& size, const std::array<int, 3>& cells) {
-  const int dimension = dimension_of(element);
-  const std::vector<BrickPart> parts = parts_of(element);
-  if (parts.empty()) throw InputError(fmt::format("box: a box is not made of {} elements", name_of(element)));
-  check_box(dimension, size, cells, parts.size() * static_cast<size_t>(nodes_of(element)));
-  // Places of the nodes of a brick on the lattice, from the brick's lowest corner.
+// Places of the nodes of a brick on the lattice, from the brick's lowest corner.
+std::vector<Eigen::Vector3i> places_of(Element element, const std::vector<BrickPart>& parts) {
   std::vector<Eigen::Vector3i> nodes;
   for (const BrickPart& part : parts) {
     const auto corner = [](int c) { return Eigen::Vector3i(c & 1, c >> 1 & 1, c >> 2); };
@@ -110,11 +105,23 @@ Mesh box_mesh(Element element, const Eigen::Vector3d& size, const std::array<int
       nodes.emplace_back(2 * corner(part[0]) + axes * (2 * node).cast<int>());
     }
   }
+  return nodes;
+}
+
+// Bricks are cut in one of two ways, in turn.
+Mesh lattice_mesh(Element element, const Eigen::Vector3d& size, const std::array<int, 3>& cells,
+                  const std::array<std::vector<BrickPart>, 2>& parts) {
+  const int dimension = dimension_of(element);
+  if (parts[0].empty()) throw InputError(fmt::format("box: a box is not made of {} elements", name_of(element)));
+  check_box(dimension, size, cells, parts[0].size() * static_cast<size_t>(nodes_of(element)));
+  const std::array<std::vector<Eigen::Vector3i>, 2> nodes = {places_of(element, parts[0]),
+                                                             places_of(element, parts[1])};
   const auto for_each_node = [&](auto visit) {
     for (int k = 0; k < (dimension > 2 ? cells[2] : 1); ++k) {
       for (int j = 0; j < (dimension > 1 ? cells[1] : 1); ++j) {
         for (int i = 0; i < cells[0]; ++i) {
-          for (const Eigen::Vector3i& node : nodes) visit(2 * Eigen::Vector3i(i, j, k) + node);
+          for (const Eigen::Vector3i& node : nodes[static_cast<size_t>((i + j + k) % 2)])
+            visit(2 * Eigen::Vector3i(i, j, k) + node);
         }
       }
     }
@@ -127,6 +134,18 @@ Mesh box_mesh(Element element, const Eigen::Vector3d& size, const std::array<int
   mesh.X = lattice.count(size);
   for_each_node([&](const Eigen::Vector3i& place) { mesh.cells.push_back(lattice.number(place)); });
   return mesh;
+}
+
+}  // namespace
+
+Mesh box_mesh(Element element, const Eigen::Vector3d& size, const std::array<int, 3>& cells) {
+  return lattice_mesh(element, size, cells, {parts_of(element), parts_of(element)});
+}
+
+Mesh alternating_triangles(Element element, const Eigen::Vector3d& size, const std::array<int, 3>& cells) {
+  if (shape_of(element) != ReferenceShape::triangle)
+    throw InputError(fmt::format("box: {} elements have no diagonals to turn", name_of(element)));
+  return lattice_mesh(element, size, cells, {{parts_of(element), {{0, 1, 2, 4}, {3, 2, 1, 4}}}});
 }
 
 int elements_per_brick(Element element) { return static_cast<int>(parts_of(element).size()); }

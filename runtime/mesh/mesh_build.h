@@ -15,6 +15,10 @@ namespace ergon {
 Mesh box_mesh(Element element, const Eigen::Vector3d& size, const std::array<int, 3>& cells);
 int elements_per_brick(Element element);  // 0 for a point
 
+// A rectangle of triangles, as above but for its diagonals: they turn from brick to brick, so that no direction is
+// preferred. For Tri3 and Tri6.
+Mesh alternating_triangles(Element element, const Eigen::Vector3d& size, const std::array<int, 3>& cells);
+
 inline Mesh box_tets(const Eigen::Vector3d& size, const std::array<int, 3>& cells) {
   return box_mesh(Element::tet4, size, cells);
 }

@@ -75,6 +75,30 @@ TEST(mesh_build, surfaces_are_seen_counter_clockwise_from_outside) {
   }
 }
 
+TEST(mesh_build, alternating_triangles_meet_eight_and_four_at_a_time) {
+  const Mesh mesh = alternating_triangles(Element::tri3, {2, 3, 1}, {4, 6, 1});
+  check_mesh(mesh);
+  EXPECT_EQ(mesh.X, box_mesh(Element::tri3, {2, 3, 1}, {4, 6, 1}).X);
+  EXPECT_NEAR(sum(rest_volumes(mesh)), 6, 1e-13);
+  std::vector<int> around(static_cast<size_t>(mesh.vertices()), 0);
+  for (size_t t = 0; t < mesh.cells.size(); t += 3) {
+    const auto at = [&](size_t i) -> Eigen::Vector3d { return mesh.X.col(mesh.cells[t + i]); };
+    const Eigen::Vector3d first = at(1) - at(0);
+    EXPECT_EQ(first.y(), 0);  // along x, as the axes of anisotropic laws are
+    EXPECT_GT(first.cross(at(2) - at(0)).z(), 0);
+    for (size_t i = 0; i < 3; ++i) ++around[static_cast<size_t>(mesh.cells[t + i])];
+  }
+  for (int j = 1; j < 6; ++j)
+    for (int i = 1; i < 4; ++i) EXPECT_EQ(around[static_cast<size_t>(5 * j + i)], (i + j) % 2 == 0 ? 8 : 4);
+  check_mesh(alternating_triangles(Element::tri6, {2, 3, 1}, {4, 6, 1}));
+  EXPECT_THROW(alternating_triangles(Element::quad4, {2, 3, 1}, {4, 6, 1}), InputError);
+}
+
+TEST(mesh_build, the_first_side_of_every_triangle_lies_along_x) {
+  const Mesh mesh = box_mesh(Element::tri3, {2, 3, 1}, {4, 6, 1});
+  for (size_t t = 0; t < mesh.cells.size(); t += 3) EXPECT_EQ(mesh.X(1, mesh.cells[t]), mesh.X(1, mesh.cells[t + 1]));
+}
+
 TEST(mesh_build, bad_numbers_are_named) {
   const auto message = [](auto build) -> std::string {
     try {

@@ -4,29 +4,10 @@
 #include <cmath>
 #include <filesystem>
 
-#include "scenes/run.h"
-#include "tests/scenes/real_kernels.h"
+#include "tests/scenes/finish_scene.h"
 
 namespace ergon {
 namespace {
-
-struct Finished {
-  BuiltScene built;
-  RunSummary summary;
-  State end;
-};
-
-// `steps`: 0 for all.
-Finished finish(const std::string& name, long steps = 0) {
-  const Scene scene = read_scene(ERGON_SOURCE_DIR "/scenes/" + name);
-  Finished out{build_scene(scene, shipped_energies(), real_kernels), {}, {}};
-  if (steps > 0) out.built.steps = std::min(steps, out.built.steps);
-  RunOptions options;
-  options.last_state = &out.end;
-  options.verify = true;
-  out.summary = run_scene(scene, out.built, options);
-  return out;
-}
 
 TEST(shipped_scenes, all_are_read_and_built) {
   int scenes = 0;
@@ -38,20 +19,15 @@ TEST(shipped_scenes, all_are_read_and_built) {
   EXPECT_GE(scenes, 2);
 }
 
-double mean(const Finished& scene, const Eigen::Matrix3Xd& x, size_t body, int axis) {
-  const Body& b = scene.built.bodies[body];
-  return x.row(axis).segment(b.first_vertex, b.ordered.vertices()).mean();
-}
-
 TEST(SlowScenes, a_block_slides_down_a_slope_as_coulomb_says) {
-  const Finished slope = finish("slope.toml");
+  const FinishedScene slope = finish("slope.toml");
   ASSERT_EQ(slope.summary.failure, "");
   // g (sin - mu cos)/2 t^2 = 0.274 m, and implicit Euler's factor of 1 + dt/t; a little more for how it starts.
   EXPECT_NEAR(mean(slope, slope.end.x, 0, 0) - mean(slope, slope.built.start.x, 0, 0), 0.2753, 0.01);
 }
 
 TEST(SlowScenes, a_ball_at_1000_metres_per_second_does_not_pass_a_plate) {
-  const Finished impact = finish("fast_impact.toml");
+  const FinishedScene impact = finish("fast_impact.toml");
   ASSERT_EQ(impact.summary.failure, "");
   EXPECT_GT(impact.end.x.row(2).head(impact.built.bodies[0].ordered.vertices()).minCoeff(), 0);
   EXPECT_LT(mean(impact, impact.end.x, 0, 2), 30);
@@ -59,7 +35,7 @@ TEST(SlowScenes, a_ball_at_1000_metres_per_second_does_not_pass_a_plate) {
 }
 
 TEST(SlowScenes, a_stack_of_light_and_heavy_cubes_stands) {
-  const Finished stack = finish("cube_stack.toml");
+  const FinishedScene stack = finish("cube_stack.toml");
   ASSERT_EQ(stack.summary.failure, "");
   EXPECT_LT(stack.summary.largest_speed, 1e-2);
   for (size_t i = 0; i < 5; ++i) {
@@ -70,26 +46,26 @@ TEST(SlowScenes, a_stack_of_light_and_heavy_cubes_stands) {
 }
 
 TEST(SlowScenes, a_ball_goes_through_a_tube_that_is_narrower) {
-  const Finished tube = finish("ball_through_tube.toml");
+  const FinishedScene tube = finish("ball_through_tube.toml");
   ASSERT_EQ(tube.summary.failure, "");
   EXPECT_GT(mean(tube, tube.end.x, 0, 0), 0.2);  // beyond the tube's end
 }
 
 TEST(SlowScenes, a_mat_is_twisted_by_its_ends) {
-  const Finished mat = finish("twisted_mat.toml");
+  const FinishedScene mat = finish("twisted_mat.toml");
   ASSERT_EQ(mat.summary.failure, "");
   EXPECT_LT(mat.summary.smallest_gap, 1e-3);  // it touches itself
 }
 
 TEST(SlowScenes, two_bunnies_fall_on_each_other) {
-  const Finished bunnies = finish("two_bunnies.toml", 25);
+  const FinishedScene bunnies = finish("two_bunnies.toml", 25);
   ASSERT_EQ(bunnies.summary.failure, "");
   EXPECT_LT(bunnies.summary.smallest_gap, 1e-3);
   EXPECT_LE(bunnies.summary.max_energy_rise, 1e-6 * bunnies.summary.start_energy);
 }
 
 TEST(SlowScenes, the_bunny_comes_to_rest_on_the_floor) {
-  const Finished bunny = finish("bunny_drop.toml");
+  const FinishedScene bunny = finish("bunny_drop.toml");
   const Eigen::Matrix3Xd &start = bunny.built.start.x, &end = bunny.end.x;
   // 194.288 is the volume of the mesh in its own unit.
   EXPECT_NEAR(bunny.built.mass.sum(), 1000 * 194.288 * std::pow(0.0207, 3), 1e-5);
@@ -213,7 +189,7 @@ TEST(SlowScenes, the_cantilever_bends_as_the_elastica_does) {
   // A light load bends as q L^4 / (8 EI), which holds the elastica itself to a closed form.
   EXPECT_NEAR(elastica_deflection(1e-3, 1, 1), 1e-3 / 8, 1e-9);
 
-  const Finished beam = finish("cantilever.toml");
+  const FinishedScene beam = finish("cantilever.toml");
   EXPECT_EQ(beam.summary.failure, "");
   EXPECT_LE(beam.summary.max_energy_rise, 1e-9 * beam.summary.start_energy);
   double tip = 0;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "runtime/lanes/lanes.h"
+#include "runtime/mesh/mesh_stencils.h"
 #include "tests/tools/command.h"
 #include "tools/installation.h"
 #include "tools/problem.h"

@@ -1,0 +1,153 @@
+#include "scenes/object_laws.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "runtime/error.h"
+#include "runtime/mesh/mesh_stencils.h"
+
+namespace ergon {
+namespace {
+
+std::string listed(std::vector<std::string> names) {
+  if (names.size() < 2) return fmt::format("{}", fmt::join(names, ""));
+  const std::string last = names.back();
+  names.pop_back();
+  return fmt::format("{} and {}", fmt::join(names, ", "), last);
+}
+
+// X0 is filled in for a dof x0.
+bool is_rest_position(const Energy& energy, const Symbol& rest) {
+  std::string dof = rest.name;
+  dof[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(dof[0])));
+  const Symbol* found = energy.find(dof);
+  return dof != rest.name && found != nullptr && found->role == Role::dof && rest.shape == found->shape;
+}
+
+bool is_mass(const Energy& energy, const Symbol& rest) {
+  return energy.geometry == "point" && rest.name == "mass" && rest.shape.scalar() && to_string(rest.unit) == "kg";
+}
+
+std::string unit_of(const RestSize& size) {
+  return size.dimension() == 1 ? "m" : fmt::format("m^{}", size.dimension());
+}
+
+bool is_size(const RestSize& size, const Symbol& rest) {
+  return rest.name == size.name && rest.shape.scalar() && to_string(rest.unit) == unit_of(size);
+}
+
+// What a scene knows of a stencil of this kind, for messages.
+std::string known_rest_data(const std::string& kind) {
+  std::vector<std::string> known = {"rest positions (X0[3] for a dof x0)"};
+  if (kind == "point") known.emplace_back("mass (kg)");
+  for (const RestSize& size : rest_sizes(kind)) known.push_back(fmt::format("{} ({})", size.name, unit_of(size)));
+  return listed(known);
+}
+
+void check_rest_data(const Energy& energy, const Place& place) {
+  const std::vector<RestSize> sizes = rest_sizes(energy.geometry);
+  for (const Symbol* rest : energy.with_role(Role::rest)) {
+    const auto is_it = [&](const RestSize& size) { return is_size(size, *rest); };
+    if (is_mass(energy, *rest) || is_rest_position(energy, *rest) || std::any_of(sizes.begin(), sizes.end(), is_it))
+      continue;
+    throw SourceError(
+        place, fmt::format("a scene cannot supply the rest data '{}' ({}{}) of {}; of a {} it knows {}", rest->name,
+                           rest->shape.scalar() ? "" : to_string(rest->shape) + " in ", to_string(rest->unit),
+                           energy.name, energy.geometry, known_rest_data(energy.geometry)));
+  }
+}
+
+void check_lags(const Energy& energy, const Place& place) {
+  for (const Symbol* lag : energy.with_role(Role::lag)) {
+    const auto of_point = [&](const Symbol* dof) {
+      return lag->name == dof->name + "hat" || lag->name == dof->name + "lag";
+    };
+    const std::vector<const Symbol*> dofs = energy.with_role(Role::dof);
+    if (lag->name != "dt" && std::none_of(dofs.begin(), dofs.end(), of_point))
+      throw SourceError(place, fmt::format("a scene does not renew the lag '{}' of {}: it knows dt, xhat and xlag",
+                                           lag->name, energy.name));
+  }
+}
+
+void check_supported(const Energy& energy, const Place& place) {
+  if (energy.kind == Energy::Kind::density) return;
+  const std::vector<std::string> kinds = stencil_kinds();
+  if (std::find(kinds.begin(), kinds.end(), energy.geometry) == kinds.end())
+    throw SourceError(place, fmt::format("{} is an energy of a {}; an object carries densities, and energies of a {}",
+                                         energy.name, energy.geometry, listed(kinds)));
+  if (!energy.cases.empty() || !energy.active.empty())
+    throw SourceError(place, fmt::format("{} acts only under its conditions (case, active), as contact does; an object "
+                                         "carries energies that always act",
+                                         energy.name));
+  check_rest_data(energy, place);
+  check_lags(energy, place);
+}
+
+StencilData rest_data(const Energy& energy, const std::vector<int>& stencils, const BuiltScene& built) {
+  StencilData out;
+  const std::vector<RestSize> sizes = rest_sizes(energy.geometry);
+  for (const Symbol* rest : energy.with_role(Role::rest)) {
+    if (is_mass(energy, *rest))
+      for (const int vertex : stencils) out["mass"].push_back(built.mass[vertex]);
+    for (const RestSize& size : sizes)
+      if (is_size(size, *rest)) out[size.name] = rest_size_of(size, energy.geometry, stencils, built.start.x);
+  }
+  return out;
+}
+
+Potential object_potential(const UsedLaw& law, const Kernel& kernel, const Body& body, const BuiltScene& built) {
+  const Energy& energy = *law.energy;
+  if (energy.kind == Energy::Kind::density)
+    return Potential::on_mesh(energy.name, kernel, body.ordered, body.first_vertex, law.params, body.quadrature);
+  std::vector<int> stencils = stencils_on_mesh(energy.geometry, body.ordered);
+  for (int& vertex : stencils) vertex += body.first_vertex;
+  return Potential::on_stencils(energy.name, kernel, stencils, built.start.x, law.params,
+                                rest_data(energy, stencils, built));
+}
+
+}  // namespace
+
+std::vector<UsedLaw> object_laws(const SceneObject& object, Laws& laws) {
+  std::vector<UsedLaw> out;
+  for (const EnergyUse& use : object.energies) {
+    const Energy& energy = laws.get(use);
+    check_supported(energy, use.at("law"));
+    out.push_back({&energy, checked_params(energy, use, object.thickness)});
+  }
+  return out;
+}
+
+void check_geometry(const SceneObject& object, const std::vector<UsedLaw>& laws, const Body& body) {
+  constexpr const char* geometries[] = {"point", "line", "membrane", "solid"};
+  const Element element = body.ordered.element;
+  const std::string geometry = geometries[dimension_of(element)];
+  const std::vector<std::string> kinds = stencil_kinds(element);
+  for (size_t k = 0; k < laws.size(); ++k) {
+    const Energy& energy = *laws[k].energy;
+    const Place& place = object.energies[k].at("law");
+    if (energy.kind == Energy::Kind::density) {
+      if (energy.geometry == geometry) continue;
+      throw SourceError(place, fmt::format("{} is a density of a {}; object '{}' is a {} of {} cells", energy.name,
+                                           energy.geometry, body.name, geometry, name_of(element)));
+    }
+    if (std::find(kinds.begin(), kinds.end(), energy.geometry) != kinds.end()) continue;
+    throw SourceError(place, fmt::format("{} is an energy of a {}, which {} cells have; object '{}' is made of {} "
+                                         "cells, which have those of a {}",
+                                         energy.name, energy.geometry, elements_with(energy.geometry), body.name,
+                                         name_of(element), listed(kinds)));
+  }
+}
+
+void add_object(const SceneObject& object, const std::vector<UsedLaw>& laws, const UsedKernels& kernels, size_t body,
+                BuiltScene& out) {
+  for (size_t i = 0; i < laws.size(); ++i) try {
+      out.system->add(object_potential(laws[i], kernels.get(*laws[i].energy), out.bodies[body], out));
+    } catch (const InputError& bad) {
+      throw SourceError(object.energies[i].place, fmt::format("object '{}': {}", object.name, bad.what()));
+    }
+}
+
+}  // namespace ergon

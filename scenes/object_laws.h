@@ -1,0 +1,31 @@
+#pragma once
+// The laws of an object on its mesh. It establishes what a scene supplies to any law: stencils of the kinds that the
+// mesh has, their rest data and lags; which law asks for them makes no difference.
+
+#include <vector>
+
+#include "scenes/builder.h"
+#include "scenes/laws.h"
+#include "scenes/used_kernels.h"
+
+namespace ergon {
+
+// One law of one object, checked.
+struct UsedLaw {
+  const Energy* energy;
+  Parameters params;
+};
+
+// Reads the laws and their params. Throws SourceError at the scene's line unless objects can carry them: densities, and
+// stencils of the kinds that meshes have, which always act, with rest data (rest positions, sizes of stencils as in
+// runtime/mesh/mesh_stencils.h, the `mass` of a point) and lags (`dt`, `xhat`, `xlag`) that a scene supplies.
+std::vector<UsedLaw> object_laws(const SceneObject& object, Laws& laws);
+
+// Throws SourceError at the scene's line unless the cells of the body have what the laws live on.
+void check_geometry(const SceneObject& object, const std::vector<UsedLaw>& laws, const Body& body);
+
+// Adds the potentials of object `body` to a scene whose bodies, system, masses and start are known.
+void add_object(const SceneObject& object, const std::vector<UsedLaw>& laws, const UsedKernels& kernels, size_t body,
+                BuiltScene& out);
+
+}  // namespace ergon

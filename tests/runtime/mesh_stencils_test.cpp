@@ -1,0 +1,105 @@
+#include "runtime/mesh/mesh_stencils.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <map>
+
+#include "runtime/error.h"
+#include "runtime/mesh/curve.h"
+#include "runtime/mesh/mesh_build.h"
+
+namespace ergon {
+namespace {
+
+Mesh box(Element element, int cells) { return box_mesh(element, {1, 1, 1}, {cells, cells, cells}); }
+
+std::string error_of(std::string_view kind, const Mesh& mesh) {
+  try {
+    stencils_on_mesh(kind, mesh);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(mesh_stencils, edges_are_found_once_each) {
+  // Euler's formula on the brick cut in six: 8 vertices, 19 edges (12 of the brick, 6 face diagonals, 1 inside).
+  EXPECT_EQ(stencils_on_mesh("edge", box(Element::tet4, 1)).size(), 2u * 19u);
+  EXPECT_EQ(stencils_on_mesh("edge", box(Element::hex8, 1)).size(), 2u * 12u);
+  EXPECT_EQ(stencils_on_mesh("point", box(Element::tet4, 1)).size(), 8u);
+}
+
+TEST(mesh_stencils, cells_must_be_of_their_element) {
+  EXPECT_EQ(stencils_on_mesh("tetrahedron", box(Element::tet4, 2)).size(), 4u * 6u * 8u);
+  EXPECT_EQ(stencils_on_mesh("triangle", box(Element::tri3, 2)).size(), 3u * 8u);
+  EXPECT_EQ(error_of("hinge", box(Element::quad4, 1)),
+            "'hinge' stencils are made from a mesh of Tri3 elements; this one has Quad4");
+  EXPECT_EQ(
+      error_of("body_pair", box(Element::tet4, 1)),
+      "no stencils 'body_pair' can be made from a mesh; it has point, edge, corner, triangle, tetrahedron, hinge");
+}
+
+TEST(mesh_stencils, kinds_follow_from_the_element) {
+  using Kinds = std::vector<std::string>;
+  EXPECT_EQ(stencil_kinds(Element::point), (Kinds{"point"}));
+  EXPECT_EQ(stencil_kinds(Element::edge2), (Kinds{"point", "edge", "corner"}));
+  EXPECT_EQ(stencil_kinds(Element::tri3), (Kinds{"point", "edge", "triangle", "hinge"}));
+  EXPECT_EQ(stencil_kinds(Element::quad4), (Kinds{"point", "edge"}));
+  EXPECT_EQ(stencil_kinds(Element::tet4), (Kinds{"point", "edge", "tetrahedron"}));
+}
+
+TEST(mesh_stencils, hinges_are_flat_on_a_flat_sheet_and_folded_upwards_by_their_last_point) {
+  for (const Mesh& mesh : {box(Element::tri3, 2), alternating_triangles(Element::tri3, {1, 1, 1}, {2, 2, 1})}) {
+    const std::vector<int> hinges = stencils_on_mesh("hinge", mesh);
+    ASSERT_EQ(hinges.size(), 4u * 8u);  // 16 edges, 8 of them on the border
+    for (size_t h = 0; h < hinges.size(); h += 4) {
+      auto at = [&](size_t i) -> Eigen::Vector3d { return mesh.X.col(hinges[h + i]); };
+      const Eigen::Vector3d e = at(1) - at(0), a = at(2) - at(0), b = at(3) - at(0);
+      EXPECT_GT(e.cross(a).z(), 0);
+      EXPECT_GT(b.cross(e).z(), 0);
+    }
+  }
+}
+
+TEST(mesh_stencils, an_edge_of_three_triangles_makes_three_hinges) {
+  Mesh mesh;
+  mesh.element = Element::tri3;
+  mesh.X.resize(3, 5);
+  mesh.X << 0, 1, 0, 0, 0,  //
+      0, 0, 1, -1, 0,       //
+      0, 0, 0, 0, 1;
+  mesh.cells = {0, 1, 2, 1, 0, 3, 0, 1, 4};
+  EXPECT_EQ(stencils_on_mesh("hinge", mesh), (std::vector<int>{0, 1, 2, 3, 0, 1, 2, 4, 0, 1, 4, 3}));
+}
+
+TEST(mesh_stencils, corners_follow_a_line_and_close_with_it) {
+  const std::vector<Eigen::Vector3d> square = {{0, 0, 0}, {1, 0, 0}, {1, 2, 0}, {0, 2, 0}};
+  EXPECT_EQ(stencils_on_mesh("corner", line_mesh(square, false)), (std::vector<int>{0, 1, 2, 1, 2, 3}));
+  EXPECT_EQ(stencils_on_mesh("corner", line_mesh(square, true)),
+            (std::vector<int>{3, 0, 1, 0, 1, 2, 1, 2, 3, 2, 3, 0}));
+  Mesh star = line_mesh(square, false);  // three edges from vertex 1
+  star.cells = {0, 1, 1, 2, 1, 3};
+  EXPECT_EQ(stencils_on_mesh("corner", star), (std::vector<int>{0, 1, 2, 0, 1, 3, 2, 1, 3}));
+}
+
+TEST(mesh_stencils, sizes_are_those_of_the_rest_shape) {
+  const auto sizes_of = [](std::string_view kind, const Mesh& mesh) {
+    const std::vector<int> stencils = stencils_on_mesh(kind, mesh);
+    std::map<std::string, std::vector<double>> out;
+    for (const RestSize& size : rest_sizes(kind)) out[size.name] = rest_size_of(size, kind, stencils, mesh.X);
+    return out;
+  };
+  using Sizes = std::map<std::string, std::vector<double>>;
+  EXPECT_EQ(sizes_of("corner", line_mesh({{0, 0, 0}, {3, 4, 0}, {3, 4, 2}}, false)), (Sizes{{"L0", {5}}, {"L1", {2}}}));
+  EXPECT_EQ(sizes_of("edge", line_mesh({{0, 0, 0}, {3, 4, 0}, {3, 4, 2}}, false)), (Sizes{{"L", {5, 2}}}));
+  const Mesh sheet = box_mesh(Element::tri3, {3, 4, 1}, {1, 1, 1});
+  EXPECT_EQ(sizes_of("triangle", sheet), (Sizes{{"A", {6, 6}}}));
+  EXPECT_EQ(sizes_of("hinge", sheet), (Sizes{{"L", {5}}, {"A0", {6}}, {"A1", {6}}}));
+  EXPECT_TRUE(sizes_of("point", sheet).empty());
+  const Sizes solid = sizes_of("tetrahedron", box(Element::tet4, 1));
+  for (const double volume : solid.at("V")) EXPECT_NEAR(volume, 1.0 / 6, 1e-15);
+}
+
+}  // namespace
+}  // namespace ergon

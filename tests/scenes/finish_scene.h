@@ -1,0 +1,36 @@
+#pragma once
+// Runs a scene that comes with the program, every step of it tested exactly for intersections.
+
+#include <algorithm>
+#include <string>
+
+#include "scenes/run.h"
+#include "tests/scenes/real_kernels.h"
+
+namespace ergon {
+
+struct FinishedScene {
+  BuiltScene built;
+  RunSummary summary;
+  State end;
+};
+
+// `steps`: 0 for all; dt: 0 for that of the scene.
+inline FinishedScene finish(const std::string& name, long steps = 0, double dt = 0) {
+  Scene scene = read_scene(ERGON_SOURCE_DIR "/scenes/" + name);
+  if (dt > 0) scene.time.dt = dt;
+  FinishedScene out{build_scene(scene, shipped_energies(), real_kernels), {}, {}};
+  if (steps > 0) out.built.steps = std::min(steps, out.built.steps);
+  RunOptions options;
+  options.last_state = &out.end;
+  options.verify = true;
+  out.summary = run_scene(scene, out.built, options);
+  return out;
+}
+
+inline double mean(const FinishedScene& scene, const Eigen::Matrix3Xd& x, size_t body, int axis) {
+  const Body& b = scene.built.bodies[body];
+  return x.row(axis).segment(b.first_vertex, b.ordered.vertices()).mean();
+}
+
+}  // namespace ergon
