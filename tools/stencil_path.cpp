@@ -72,6 +72,7 @@ std::vector<StencilPath> stencil_paths(const std::string& stencil) {
                return flat({o, x});
              }}};
   if (stencil == "hinge") return {turned({-0.5 * x, 0.5 * x, y}, -y, -z, 2.5)};
+  if (stencil == "corner") return {turned({-x, o}, x, y, 2.5)};
   if (stencil == "triangle") return {turned({-x, o}, x, y, 2.5), scaled({o, x, y})};
   if (stencil == "tetrahedron") return {scaled({o, x, y, z})};
   if (stencil == "point_point") return {apart({o, o}, 1)};

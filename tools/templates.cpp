@@ -54,6 +54,15 @@ require  L2 > 0
 let      strain = (norm2(x1 - x0)/L2 - 1)/2          # Green's strain: 0 at the rest length
 value    k*L2/2*strain^2
 )"},
+      {"corner", "energy of three points that follow each other on a line",
+       R"(# Bending of a line that is straight at rest. (This line is the summary: say what the law is for.)
+energy   NAME   corner
+dof      x0 x1 x2  m                                 # the points, vectors of 3
+rest     L0 L1     m      (0, inf)   lengths of both edges at rest    # filled in by the program
+param    EI        N*m^2  (0, inf)   bending stiffness    # a name, its unit, its range, help
+let      bend = (x2 - x1)/L1 - (x1 - x0)/L0          # change of direction; 0 while straight
+value    EI/(L0 + L1)*norm2(bend)
+)"},
       {"triangle", "energy of three points",
        R"(# Keeps the area of a triangle. (This line is the summary: say what the law is for.)
 energy   NAME   triangle

@@ -88,12 +88,12 @@ TEST(SlowScenes, the_bunny_comes_to_rest_on_the_floor) {
 }
 
 // How far the vertex that moves most does.
-double most_moved(const Finished& scene) {
+double most_moved(const FinishedScene& scene) {
   return std::sqrt((scene.end.x - scene.built.start.x).colwise().squaredNorm().maxCoeff());
 }
 
 TEST(SlowScenes, a_tower_of_affine_boxes_stands) {
-  const Finished tower = finish("affine_tower.toml");
+  const FinishedScene tower = finish("affine_tower.toml");
   ASSERT_EQ(tower.summary.failure, "");
   EXPECT_EQ(tower.built.system->free_vertices(), 40);
   EXPECT_LT(tower.summary.largest_speed, 1e-6);
@@ -101,7 +101,7 @@ TEST(SlowScenes, a_tower_of_affine_boxes_stands) {
 }
 
 TEST(SlowScenes, a_chain_of_affine_rings_hangs_together) {
-  const Finished chain = finish("affine_chain.toml");
+  const FinishedScene chain = finish("affine_chain.toml");
   ASSERT_EQ(chain.summary.failure, "");
   EXPECT_LE(chain.summary.max_energy_rise, 1e-6);
   // Neighbours stay linked: their centres no further apart than taut ones.
@@ -115,7 +115,7 @@ TEST(SlowScenes, a_chain_of_affine_rings_hangs_together) {
 }
 
 TEST(SlowScenes, affine_boxes_lie_on_a_cloth) {
-  const Finished cloth = finish("boxes_on_cloth.toml", 60);
+  const FinishedScene cloth = finish("boxes_on_cloth.toml", 60);
   ASSERT_EQ(cloth.summary.failure, "");
   EXPECT_LT(cloth.summary.smallest_gap, 1e-3);
   for (size_t box = 1; box <= 5; ++box) {
@@ -125,11 +125,11 @@ TEST(SlowScenes, affine_boxes_lie_on_a_cloth) {
 }
 
 // With another coefficient of friction everywhere.
-Finished finish_with_friction(const std::string& name, double mu) {
+FinishedScene finish_with_friction(const std::string& name, double mu) {
   Scene scene = read_scene(ERGON_SOURCE_DIR "/scenes/" + name);
   scene.contact->mu = mu;
   for (SceneGround& ground : scene.grounds) ground.mu = mu;
-  Finished out{build_scene(scene, shipped_energies(), real_kernels), {}, {}};
+  FinishedScene out{build_scene(scene, shipped_energies(), real_kernels), {}, {}};
   RunOptions options;
   options.last_state = &out.end;
   options.verify = true;
@@ -138,21 +138,21 @@ Finished finish_with_friction(const std::string& name, double mu) {
 }
 
 TEST(SlowScenes, an_arch_of_stones_stands_by_friction_alone) {
-  const Finished arch = finish("masonry_arch.toml");
+  const FinishedScene arch = finish("masonry_arch.toml");
   ASSERT_EQ(arch.summary.failure, "");
   EXPECT_LT(most_moved(arch), 5e-3);
   EXPECT_LT(arch.summary.largest_speed, 1e-4);
-  const Finished smooth = finish_with_friction("masonry_arch.toml", 0);
+  const FinishedScene smooth = finish_with_friction("masonry_arch.toml", 0);
   ASSERT_EQ(smooth.summary.failure, "");
   EXPECT_LT(mean(smooth, smooth.end.x, 4, 2), mean(smooth, smooth.built.start.x, 4, 2) - 0.5);  // the keystone
 }
 
 TEST(SlowScenes, a_house_of_cards_stands_by_friction_alone) {
-  const Finished house = finish("card_house.toml");
+  const FinishedScene house = finish("card_house.toml");
   ASSERT_EQ(house.summary.failure, "");
   EXPECT_LT(most_moved(house), 1e-3);
   EXPECT_LT(house.summary.largest_speed, 1e-4);
-  const Finished smooth = finish_with_friction("card_house.toml", 0);
+  const FinishedScene smooth = finish_with_friction("card_house.toml", 0);
   ASSERT_EQ(smooth.summary.failure, "");
   EXPECT_LT(mean(smooth, smooth.end.x, 4, 2), 0.03);  // the floor of the upper storey lay 84 mm high
 }
