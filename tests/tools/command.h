@@ -10,6 +10,8 @@
 #include <sstream>
 #include <string>
 
+#include "tests/runtime/temporary_folder.h"
+
 namespace ergon {
 
 struct Answer {
@@ -21,14 +23,9 @@ struct Answer {
 class CommandTest : public testing::Test {
  protected:
   void SetUp() override {
-    const testing::TestInfo* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder = std::filesystem::path(testing::TempDir()) /
-             (std::string("ergon_") + info->test_suite_name() + "_" + info->name());
-    std::filesystem::remove_all(folder);
-    std::filesystem::create_directories(folder);
+    folder = own_.path("");
     setenv("ERGON_CACHE", (folder / "cache").c_str(), 1);
   }
-  void TearDown() override { std::filesystem::remove_all(folder); }
 
   std::string read(const std::string& name) const {
     std::ostringstream text;
@@ -49,6 +46,10 @@ class CommandTest : public testing::Test {
   Answer ergon(const std::string& arguments) const { return shell(ERGON_BINARY_DIR "/ergon " + arguments); }
 
   std::filesystem::path folder;
+
+ private:
+  // Of this process alone: the same test may run from another checkout at the same time.
+  TemporaryFolder own_;
 };
 
 }  // namespace ergon

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "runtime/error.h"
+#include "tests/runtime/temporary_folder.h"
 #include "tools/matrix_market.h"
 #include "tools/positions.h"
 
@@ -12,13 +13,6 @@ namespace {
 
 class Files : public testing::Test {
  protected:
-  void SetUp() override {
-    folder = testing::TempDir() + "ergon_files_" + testing::UnitTest::GetInstance()->current_test_info()->name() + "/";
-    std::filesystem::remove_all(folder);
-    std::filesystem::create_directories(folder);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder); }
-
   void write(const std::string& name, const std::string& text) { std::ofstream(folder + name) << text; }
   std::string read(const std::string& name) {
     std::ostringstream text;
@@ -36,7 +30,8 @@ class Files : public testing::Test {
     return "no error";
   }
 
-  std::string folder;
+  const TemporaryFolder own;
+  const std::string folder = own.path("");
 };
 
 TEST_F(Files, PositionsAreReadWithCommentsAndEmptyLines) {
