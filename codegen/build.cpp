@@ -65,13 +65,15 @@ std::vector<std::string> compiler_flags(VectorType type) {
                                     "-fno-rtti",
                                     "-fno-asynchronous-unwind-tables",
                                     "-fPIC",
-                                    "-shared"};
+                                    "-shared",
+                                    "-nostdlib"};  // of C++ nothing is used; looking it up takes the linker longest
 #if defined(__x86_64__)
   if (type.bytes() == 32) flags.push_back("-march=x86-64-v3");
   if (type.bytes() == 64) flags.push_back("-march=x86-64-v4");
   if (type.lanes > 1) flags.push_back("-lmvec");
 #endif
   flags.push_back("-lm");
+  flags.push_back("-lc");
   return flags;
 }
 
