@@ -32,9 +32,9 @@ struct NewtonOptions {
   // Project on demand: Hessians are H + a*(P - H), H as they are and P projected. A minimisation starts with a = 0;
   // where the sum has no factor or gives no direction of descent, or where the direction proves too bold, a grows up to
   // 1, and it falls again where steps succeed. Near a minimum the sum of the H is definite, and only they converge
-  // quadratically. Source: Longva et al. 2023, Pitfalls of Projection: A study of Newton-type solvers for incremental
-  // potentials. Held against others as project-on-demand Newton in Fernandez-Fernandez, Loeschner, Bender 2026,
-  // Progressively Projected Newton's Method, CGF 45(2).
+  // quadratically. Source: project-on-demand Newton of Longva, Loeschner, Fernandez-Fernandez, Larionov, Ascher, Bender
+  // 2023, Pitfalls of Projection: A study of Newton-type solvers for incremental potentials, arXiv:2311.14526, which
+  // knows a = 0 and a = 1 only.
   bool on_demand = false;
   double sufficient_decrease = 1e-4;  // of the decrease that the gradient predicts
   int max_halvings = 60;
