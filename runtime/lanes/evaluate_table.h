@@ -121,7 +121,7 @@ inline void sum_components(const Stencils& s, int first, const Scalar* packed, S
       }
     }
     if (R == 1 && Q == 3 && s.axis != nullptr) {
-      add_tensor_rows(s, half, b, out);
+      add_tensor_rows(s, half, b, first % 3, c, element);
       continue;
     }
     for (int a = b; a < n; a += kRows<R>) {
@@ -149,7 +149,10 @@ inline void sum_table_products(const Stencils& s, int block_index, Scalar* packe
     to_reference_axes<S>(Weights<S>(s, block_index, p), packed + static_cast<long>(p) * S::kPacked * kWidth);
   }
   if (s.quadrature > kFewPoints) {
-    for (int first = 0; first < 9; ++first) sum_components<S, 1>(s, first, packed, element, room);
+    const bool halves = S::kVectors == 3 && s.axis != nullptr;  // one component gives its transpose
+    for (int first = 0; first < 9; ++first) {
+      if (!halves || first % 3 >= first / 3) sum_components<S, 1>(s, first, packed, element, room);
+    }
   } else {
     for (int first = 0; first < 9; first += 3) sum_components<S, 3>(s, first, packed, element, room);
   }

@@ -20,9 +20,10 @@ inline void transpose_times(const double* m, const Real* in, Real* out, int step
   }
 }
 
-// One component of the blocks (a, b) for all a >= b: sum over points p and axes i of (gradient of the shape function of
-// a along i at p) half[p][i]. `half` is [27][3], of vectors; `out` the place of the component in the first block.
-inline void add_tensor_rows(const Stencils& s, const Scalar* half, int b, Scalar* out) {
+// Component (row, column) of the blocks (a, b) for all a: sum over points p and axes i of (gradient of the shape
+// function of a along i at p) half[p][i]. `half` is [27][3], of vectors. Where a < b, this is component (column, row)
+// of (b, a): of components beside the diagonal one of two is enough, and of those on it one of (a, b) and (b, a).
+inline void add_tensor_rows(const Stencils& s, const Scalar* half, int b, int row, int column, Scalar* element) {
   // Points instead of nodes first: there, a gradient along an axis takes only the points of that line.
   const double *between = s.axis, *values = s.axis + 9;
   const auto at = [half](int p, int i) { return load(half + (3L * p + i) * kWidth); };
@@ -52,13 +53,18 @@ inline void add_tensor_rows(const Stencils& s, const Scalar* half, int b, Scalar
     for (int i = 0; i < 3; ++i) transpose_times<false>(values, in + i, sum + 9 * k + i, 3);
   }
   for (int line = 0; line < 9; ++line) {
+    const int* const nodes = s.axis_nodes + line;
+    if (row == column && nodes[0] < b && nodes[9] < b && nodes[18] < b) continue;
     Real summed[3];
     const Real in[3] = {sum[line], sum[line + 9], sum[line + 18]};
     transpose_times<false>(values, in, summed, 1);
 #pragma GCC unroll 3
     for (int k = 0; k < 3; ++k) {
-      const int a = s.axis_nodes[line + 9 * k];
-      if (a >= b) store(out + 9L * (a * (a + 1) / 2 + b) * kWidth, summed[k]);
+      const int a = nodes[9 * k];
+      if (a >= b) store(element + (9L * (a * (a + 1) / 2 + b) + 3 * column + row) * kWidth, summed[k]);
+      if (a <= b && row != column) {
+        store(element + (9L * (b * (b + 1) / 2 + a) + 3 * row + column) * kWidth, summed[k]);
+      }
     }
   }
 }
