@@ -77,7 +77,21 @@ std::vector<EntryCost> cost_of_entries(const Schedule& s) {
     entries.push_back(counter.count("hessian, far", far_hessian, true, true, size(far_hessian)));
   }
   if (!s.principal.empty()) entries.push_back(counter.count("principal", s.principal, true, true, size(s.principal)));
+  if (s.changed >= 0) {
+    const Roots projected = join(join(gradient, s.projected), {s.changed});
+    entries.push_back(counter.count("projected", projected, true, true, size(projected)));
+  }
   return entries;
+}
+
+int operations_when_projected(const std::vector<EntryCost>& entries) {
+  const auto of = [&](const std::string& entry) -> const EntryCost* {
+    const auto found =
+        std::find_if(entries.begin(), entries.end(), [&](const EntryCost& c) { return c.entry == entry; });
+    return found == entries.end() ? nullptr : &*found;
+  };
+  if (of("principal")) return of("gradient")->operations + of("principal")->operations;
+  return (of("projected") ? of("projected") : of("hessian"))->operations;
 }
 
 std::string cost_table(const std::vector<EntryCost>& entries, const std::string& margin) {

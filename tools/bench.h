@@ -18,17 +18,21 @@ struct BenchKernels {
   std::vector<std::string> set;  // inputs by NAME=VALUE; the others are chosen within their ranges
   int lanes = 0;                 // 0: as many as this machine has
   int threads = 1;
-  int cells = 40;  // per edge of a cube
+  int cells = 40;               // per edge of a cube
+  int quadrature = -1;          // exactness; negative: the element's default
+  std::string state = "noise";  // rest, noise, definite or indefinite
 };
-// One row per energy, case and entry. Wall-clock time per call, the median of at least five calls and one second,
-// after a first call that builds what later calls reuse. Throws SourceError and InputError.
+// States: the mesh at rest; displaced by noise of 0.15 cells; stretched to 1.1 or pressed to 0.8 times its size with
+// noise of 0.02 cells, where a solid's Hessians are all definite or none is. Rows tell the share that projection
+// changed. One row per energy, case and entry. Wall-clock time per call, the median of at least five calls and one
+// second, after a first call that builds what later calls reuse. Throws SourceError and InputError.
 void bench_kernels(const BenchKernels& options, Rows& rows);
 
 struct BenchCompile {
   std::vector<std::string> energies;  // empty: the catalogue
   bool slowest = false;               // two rows more: the largest of every figure
 };
-// Two rows per energy and case: from nothing, and again with the cache that the first left (the median of five).
+// Two rows per energy and case: from nothing (the median of three), and again with the cache that this left (of five).
 void bench_compile(const BenchCompile& options, Rows& rows);
 
 struct BenchCcd {

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string>
 
 #include "runtime/error.h"
 #include "runtime/lanes/lanes.h"
 #include "runtime/mesh/mesh_stencils.h"
+#include "runtime/mesh/quadrature.h"
 #include "tools/assignments.h"
 #include "tools/bench.h"
 #include "tools/choices.h"
@@ -55,6 +58,23 @@ Values usable_values(const Energy& energy, const Kernel& kernel, const std::stri
   throw InputError(fmt::format("no inputs of {} were found at which it is defined; give some with --set", energy.name));
 }
 
+// Where kernels are measured, on a cube whose cells have this size.
+Eigen::Matrix3Xd state_of(const Eigen::Matrix3Xd& X, const std::string& state, double cell) {
+  const double sizes[] = {1, 1, 1.1, 0.8}, noise[] = {0, 0.15, 0.02, 0.02};
+  const size_t which = chosen("--state", state, {"rest", "noise", "definite", "indefinite"});
+  if (which == 0) return X;
+  return displaced(X, cell, noise[which] * cell) + (sizes[which] - 1) * X;
+}
+
+std::optional<int> exactness_of(const Energy& energy, int asked) {
+  if (asked < 0) return std::nullopt;
+  if (energy.kind == Energy::Kind::stencil) {
+    throw InputError(fmt::format("--quadrature: {} is a stencil energy, which is not integrated", energy.name));
+  }
+  if (asked > kMaxExactness) throw InputError(fmt::format("--quadrature: 0 to {}, not {}", kMaxExactness, asked));
+  return asked;
+}
+
 void check_lanes(int given) {
   if (given == 0) return;
   std::string usable;
@@ -77,9 +97,9 @@ void bench_case(const Energy& energy, const std::string& case_name, const BenchK
   const Values values = usable_values(energy, exact, options.element, read_assignments(energy, options.set));
   auto [mesh, stencils] = sample_of(energy, options.element, options.cells);
   const double cell = 1.0 / options.cells;
-  const Eigen::Matrix3Xd x = displaced(mesh.X, cell, 0.15 * cell);
+  const Eigen::Matrix3Xd x = state_of(mesh.X, options.state, cell);
   if (kernel->actives > 0) stencils = active_stencils(energy, exact, mesh, stencils, values, x);
-  System system = make_system(energy, kernel, mesh, stencils, values);
+  System system = make_system(energy, kernel, mesh, stencils, values, exactness_of(energy, options.quadrature));
   Eigen::Matrix3Xd gradient;
   BlockMatrix hessian;
 
@@ -87,6 +107,7 @@ void bench_case(const Energy& energy, const std::string& case_name, const BenchK
     if (!options.entry.empty() && entry != options.entry) continue;
     double seconds = 0;
     int operations = 0;
+    long changed = 0;
     if (entry == "value") {
       seconds = median_seconds([&] { system.value(x); });
       operations = kernel->operations_value;
@@ -94,13 +115,13 @@ void bench_case(const Energy& energy, const std::string& case_name, const BenchK
       seconds = median_seconds([&] { system.gradient(x, gradient); });
       operations = kernel->operations_gradient;
     } else {
-      seconds = median_seconds([&] { system.hessian(x, projection, gradient, hessian); });
+      seconds = median_seconds([&] { changed = system.hessian(x, projection, gradient, hessian).indefinite; });
       // A principal form is evaluated beside the gradient, in place of the Hessian.
       const bool principal = projection != Projection::none && exact->principal != nullptr;
       operations = principal ? kernel->operations_gradient + kernel->operations_principal : kernel->operations_hessian;
     }
     const Potential& potential = system.potential(0);
-    const int elements = potential.stencil_count();
+    const int elements = potential.stencil_count(), points = elements * potential.quadrature_points();
     rows.add({{"energy", case_name.empty() ? energy.name : energy.name + "/" + case_name},
               {"element", density ? name_of(mesh.element) : energy.geometry},
               {"entry", entry},
@@ -110,7 +131,9 @@ void bench_case(const Energy& energy, const std::string& case_name, const BenchK
               {"threads", options.threads},
               {"elements", elements},
               {"ns_per_element", seconds * 1e9 / elements},
-              {"ns_per_point", seconds * 1e9 / elements / potential.quadrature_points()},
+              {"ns_per_point", seconds * 1e9 / points},
+              {"state", options.state},
+              {"indefinite", static_cast<double>(changed) / points},
               {"assembled", entry != "value"},
               {"operations", operations}});
   }

@@ -14,7 +14,7 @@ namespace ergon {
 namespace {
 
 void add_kernels(CLI::App& bench, Run& run) {
-  CLI::App* command = bench.add_subcommand("kernels", "Evaluation and assembly on a cube of cells, displaced by noise");
+  CLI::App* command = bench.add_subcommand("kernels", "Evaluation and assembly on a cube of cells");
   auto options = std::make_shared<BenchKernels>();
   auto json = std::make_shared<bool>(false);
   command->add_option("--energy", options->energies, "name or file; may be repeated; default: the catalogue")
@@ -31,6 +31,9 @@ void add_kernels(CLI::App& bench, Run& run) {
                       "elements at a time: 1, 2, 4 or 8; default: the most this machine has");
   command->add_option("--threads", options->threads, "threads to use");
   command->add_option("--cells", options->cells, "cells per edge of the cube");
+  command->add_option("--quadrature", options->quadrature, "exactness of the quadrature; default: the element's");
+  command->add_option("--state", options->state,
+                      "rest; noise; definite (stretched) or indefinite (pressed); default: noise");
   command->add_flag("--json", *json, "one JSON object per line instead of a table");
   command->callback([options, json, &run] {
     run = [options, json](std::ostream& out) {

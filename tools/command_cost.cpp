@@ -25,13 +25,10 @@ Row element_row(const Generated& kernel, const std::string& name, int points, in
   constexpr int number = 8, index = 4, block = 9 * number;
   const Module& m = kernel.module;
   const bool density = m.points == 0;
-  int hessian = 0;
-  for (const EntryCost& cost : kernel.costs)
-    if (cost.entry == "hessian") hessian = cost.operations;
   const int weights_bytes = density ? calls * (m.q_vectors * weights + 1) * number : 0;  // and the volume
   return {{"element", name},
           {"kernel_calls", calls},
-          {"operations", calls * hessian},
+          {"operations", calls * operations_when_projected(kernel.costs)},
           {"weights_bytes", weights_bytes},
           {"data_bytes", kernel.counts.elements * number},
           {"positions_bytes", points * (index + 3 * number)},
@@ -80,7 +77,7 @@ int cost(const Options& options, std::ostream& out) {
     out << fmt::format("{}{}: per {}\n", energy.name, name.empty() ? "" : ", case " + name,
                        density ? "point of quadrature" : "stencil")
         << cost_table(kernel.costs, "  ")
-        << fmt::format("per {}, value, gradient and Hessian\n", density ? "element" : "stencil");
+        << fmt::format("per {}, value, gradient and projected Hessian\n", density ? "element" : "stencil");
     Rows elements(out, false);
     for (const Row& row : element_rows(kernel)) elements.add(row);
   }

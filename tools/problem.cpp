@@ -112,7 +112,7 @@ std::vector<int> active_stencils(const Energy& energy, const Kernel& kernel, con
 }
 
 System make_system(const Energy& energy, const Kernel& kernel, const Mesh& mesh, const std::vector<int>& stencils,
-                   const Values& values) {
+                   const Values& values, std::optional<int> exactness) {
   check_given(energy, values);
   const Values params = with_role(energy, Role::param, values, 1);
   const bool density = energy.kind == Energy::Kind::density;
@@ -121,7 +121,7 @@ System make_system(const Energy& energy, const Kernel& kernel, const Mesh& mesh,
     throw InputError(fmt::format("{} has rest data, which a mesh alone does not tell", energy.name));
   }
   const size_t count = density ? 0 : stencils.size() / energy.with_role(Role::dof).size();
-  Potential potential = density ? Potential::on_mesh(energy.name, kernel, mesh, 0, params)
+  Potential potential = density ? Potential::on_mesh(energy.name, kernel, mesh, 0, params, exactness)
                                 : Potential::on_stencils(energy.name, kernel, stencils, mesh.X, params,
                                                          with_role(energy, Role::rest, values, count));
   for (const auto& [name, value] : with_role(energy, Role::lag, values, 1)) potential.set_lag(name, value);

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,9 +26,10 @@ std::vector<const Symbol*> needed_inputs(const Energy& energy);
 std::vector<int> active_stencils(const Energy& energy, const Kernel& kernel, const Mesh& mesh,
                                  const std::vector<int>& all, const Values& values, const Eigen::Matrix3Xd& x);
 
-// The potential on `stencils` (of a density: on the mesh's cells, and `stencils` is not used). Throws InputError for an
+// The potential on `stencils` (of a density: on the mesh's cells, by quadrature of that exactness or the element's
+// default; `stencils` is not used). Throws InputError for an
 // input that is missing, naming its meaning, range and unit, and for an element the energy cannot live on.
 System make_system(const Energy& energy, const Kernel& kernel, const Mesh& mesh, const std::vector<int>& stencils,
-                   const Values& values);
+                   const Values& values, std::optional<int> exactness = std::nullopt);
 
 }  // namespace ergon

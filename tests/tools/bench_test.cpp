@@ -31,8 +31,9 @@ TEST_F(Bench, KernelsGiveTheirFieldsForEachEntry) {
   const std::vector<Json> all = rows("kernels --energy stable_neo_hookean --cells 3 --project abs");
   ASSERT_EQ(all.size(), 3u);
   for (const Json& row : all) {
-    EXPECT_THAT(fields(row), ElementsAre("energy", "element", "entry", "projection", "lanes", "precision", "threads",
-                                         "elements", "ns_per_element", "ns_per_point", "assembled", "operations"));
+    EXPECT_THAT(fields(row),
+                ElementsAre("energy", "element", "entry", "projection", "lanes", "precision", "threads", "elements",
+                            "ns_per_element", "ns_per_point", "state", "indefinite", "assembled", "operations"));
     EXPECT_EQ(row["energy"], "stable_neo_hookean");
     EXPECT_EQ(row["element"], "Tet4");
     EXPECT_EQ(row["elements"], 6 * 27);
@@ -46,6 +47,27 @@ TEST_F(Bench, KernelsGiveTheirFieldsForEachEntry) {
   EXPECT_EQ(all[2]["entry"], "hessian");
   EXPECT_EQ(all[1]["projection"], "none");
   EXPECT_EQ(all[2]["projection"], "abs");
+}
+
+TEST_F(Bench, KernelsAreMeasuredWhereHessiansAreDefiniteAndWhereNot) {
+  const auto share = [&](const std::string& state) {
+    return rows("kernels --energy fibre_reinforced --entry hessian --cells 4 --state " + state)[0]["indefinite"]
+        .get<double>();
+  };
+  EXPECT_EQ(share("definite"), 0);
+  EXPECT_EQ(share("indefinite"), 1);
+  EXPECT_EQ(ergon("bench kernels --energy spring --cells 1 --state calm").err,
+            "ergon: error: --state: 'calm' is none of rest, noise, definite, indefinite\n");
+}
+
+TEST_F(Bench, KernelsTakeAQuadrature) {
+  const std::vector<Json> all =
+      rows("kernels --energy neo_hookean --element tet4 --entry value --cells 2 --quadrature 2");
+  EXPECT_NEAR(all[0]["ns_per_element"].get<double>() / all[0]["ns_per_point"].get<double>(), 4, 1e-9);
+  EXPECT_EQ(ergon("bench kernels --energy spring --quadrature 2").err,
+            "ergon: error: --quadrature: spring is a stencil energy, which is not integrated\n");
+  EXPECT_EQ(ergon("bench kernels --energy neo_hookean --quadrature 12").err,
+            "ergon: error: --quadrature: 0 to 11, not 12\n");
 }
 
 TEST_F(Bench, KernelsKnowElementsAndStencils) {

@@ -1,4 +1,5 @@
 #include <gmock/gmock.h>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "tests/tools/command.h"
@@ -110,14 +111,24 @@ TEST_F(CommandLine, TheCostIsThatOfTheEmittedFile) {
   std::istringstream json(ergon("cost spring --json").out);
   std::vector<nlohmann::json> rows;
   for (std::string line; std::getline(json, line);) rows.push_back(nlohmann::json::parse(line));
-  ASSERT_EQ(rows.size(), 7u);
+  ASSERT_EQ(rows.size(), 8u);
   EXPECT_EQ(rows[3]["entry"], "value");
   EXPECT_EQ(rows[3]["bytes_in"], 32);  // the difference of two points, and the rest length
   EXPECT_EQ(rows[3]["bytes_uniform"], 8);
   EXPECT_EQ(rows[5]["bytes_out"], 8 * (1 + 3 + 6));
-  EXPECT_EQ(rows[6]["element"], "edge");
-  EXPECT_EQ(rows[6]["matrix_bytes"], 3 * 72);
-  EXPECT_EQ(rows[6]["operations"], rows[5]["operations"]);
+  EXPECT_EQ(rows[6]["entry"], "projected");
+  EXPECT_EQ(rows[7]["element"], "edge");
+  EXPECT_EQ(rows[7]["matrix_bytes"], 3 * 72);
+  // What is evaluated is the projected Hessian, and of an isotropic density the gradient and the principal blocks.
+  EXPECT_EQ(rows[7]["operations"], rows[6]["operations"]);
+  std::map<std::string, nlohmann::json> solid;
+  std::istringstream of_solid(ergon("cost stable_neo_hookean --json").out);
+  for (std::string line; std::getline(of_solid, line);) {
+    const nlohmann::json row = nlohmann::json::parse(line);
+    solid[row.value("entry", row.value("element", ""))] = row;
+  }
+  EXPECT_EQ(solid["Tet4"]["operations"],
+            solid["gradient"]["operations"].get<int>() + solid["principal"]["operations"].get<int>());
 }
 
 TEST_F(CommandLine, ShowsTheSameSourceInTwoProcesses) {
