@@ -1,5 +1,5 @@
 #pragma once
-// Pass 9: an emitted source becomes a shared library, by the C++ compiler of the machine.
+// Pass 10: an emitted source becomes a shared library, by the C++ compiler of the machine.
 
 #include <filesystem>
 #include <stdexcept>

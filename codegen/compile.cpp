@@ -9,6 +9,7 @@
 #include "codegen/frontier.h"
 #include "codegen/hash.h"
 #include "codegen/lower.h"
+#include "codegen/parts.h"
 #include "codegen/principal.h"
 #include "codegen/rest_form.h"
 #include "codegen/schedule.h"
@@ -56,6 +57,7 @@ Generated generate(const Energy& energy, const CompileOptions& options) {
   pass("differentiate", out.times.differentiate, [&] { differentiate(out.module); });
   pass("structure", out.times.structure, [&] { find_structure(out.module); });
   pass("principal", out.times.principal, [&] { find_principal(out.module); });
+  pass("parts", out.times.parts, [&] { find_parts(out.module); });
   pass("schedule", out.times.schedule, [&] { code = schedule(out.module); });
   pass("emit", out.times.emit, [&] {
     Emitted emitted = emit(out.module, code, {options.lanes, options.single});

@@ -30,10 +30,10 @@ struct CompileOptions {
 
 // Seconds spent in each part.
 struct CompileTimes {
-  double lower = 0, rest = 0, frontier = 0, differentiate = 0, structure = 0, principal = 0, schedule = 0, emit = 0,
-         compile = 0, load = 0;
+  double lower = 0, rest = 0, frontier = 0, differentiate = 0, structure = 0, principal = 0, parts = 0, schedule = 0,
+         emit = 0, compile = 0, load = 0;
   double total() const {
-    return lower + rest + frontier + differentiate + structure + principal + schedule + emit + compile + load;
+    return lower + rest + frontier + differentiate + structure + principal + parts + schedule + emit + compile + load;
   }
 };
 

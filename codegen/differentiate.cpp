@@ -28,6 +28,10 @@ NodeId partial(Graph& g, NodeId id, size_t k) {
       return g.product(-1, {{a}, {g.sum(1, {{1, a}}), -1}});
     case Call::expm1mx:
       return g.call(Call::expm1, {a});
+    case Call::sinmx:
+      return g.product(-2, {{g.call(Call::sin, {g.scale(0.5, a)}), 2}});
+    case Call::atanmx:
+      return g.product(-1, {{a, 2}, {g.sum(1, {{1, g.power(a, 2)}}), -1}});
     case Call::sin:
       return g.call(Call::cos, {a});
     case Call::cos:

@@ -82,10 +82,10 @@ std::vector<Evaluation> evaluations() {
 }
 
 // Runs the form that all lanes ask for; where they differ, both, and picks by lane.
-std::string dispatch(const Evaluation& e, const FunctionText& near, int q_size, bool single) {
+std::string dispatch(const Evaluation& e, const FunctionText& near, int q_size, int hessian_size, bool single) {
   std::string arrays, arguments, far_arguments, picks;
   for (const std::string& array : e.outputs) {
-    const int size = array == "gradient" ? q_size : array == "hessian" ? q_size * (q_size + 1) / 2 : 1;
+    const int size = array == "gradient" ? q_size : array == "hessian" ? hessian_size : 1;
     arrays += fmt::format("  V other_{}[{}];\n", array, size);
     arguments += fmt::format("{}{}_", arguments.empty() ? "" : ", ", array);
     far_arguments += fmt::format(", ({}*)other_{}", single ? "float" : "double", array);
@@ -137,6 +137,7 @@ std::string kernel_table(const Module& m, const OperationCounts& c, VectorType t
   }
   std::string out = input_table(m);
   if (!density) out += fmt::format("static const double weights[] = {{{}}};\n", weights);
+  if (!m.parts.empty()) out += fmt::format("static const int parts[] = {{{}}};\n", fmt::join(m.parts, ", "));
   if (!density) out += fmt::format("static const char* const points[] = {{{}}};\n", points);
   const std::string entries =
       "prepare_uniforms, prepare_elements, conditions, value_entry, gradient_entry, hessian_entry";
@@ -146,13 +147,14 @@ std::string kernel_table(const Module& m, const OperationCounts& c, VectorType t
   out += fmt::format(
       "extern \"C\" __attribute__((visibility(\"default\"))) const ErgonKernel ergon_kernel = {{\n"
       "  ERGON_KERNEL_ABI, {}, {}, {}, {}, {}, {}, {}, {},\n  {}, inputs, {}, {}, {}, {}, {}, {},\n  {}, {}, {}, {},\n"
-      "  {}, {}, {}, {},\n  {}, {},\n  {}, {}, {}, {}, {}, {}}};\n",
+      "  {}, {}, {}, {},\n  {}, {},\n  {}, {}, {}, {}, {}, {}, {}}};\n",
       type.lanes, quoted(m.energy->name), quoted(m.case_name), quoted(m.energy->geometry), density ? 1 : 0, m.points,
       m.q_vectors, density ? "0" : "weights", inputs, m.params, m.raw, c.uniforms, c.elements, m.require.size(),
       m.active.size(), int{m.constant_gradient}, int{m.constant_hessian}, int{m.zero_hessian}, int{m.psd_hessian},
       c.value, c.gradient, c.hessian, c.divisions, type.single ? "0, 0, 0, 0, 0, 0" : entries, density ? "0" : "points",
       int{m.displacement}, principal && !type.single ? "principal_entry" : "0", c.principal,
-      projected && !type.single ? "projected_entry" : "0", type.single ? "&single" : "0", int{m.stretches});
+      projected && !type.single ? "projected_entry" : "0", type.single ? "&single" : "0",
+      m.parts.empty() ? "0" : "parts", int{m.stretches});
   return out;
 }
 
@@ -260,7 +262,8 @@ Emitted emit(const Module& m, const Schedule& s, VectorType type) {
     out.source += entry(e.name + (two_forms ? "_near" : "_entry"), real, e.outputs, texts[i].body);
     if (!two_forms) continue;
     out.source += entry(e.name + "_far", real, e.outputs, texts[3 + i].body);
-    out.source += entry(e.name + "_entry", real, e.outputs, dispatch(e, near, m.q_size(), type.single));
+    out.source += entry(e.name + "_entry", real, e.outputs,
+                        dispatch(e, near, m.q_size(), static_cast<int>(m.hessian.size()), type.single));
   }
   if (!m.principal.empty())
     out.source += fmt::format(

@@ -1,5 +1,5 @@
 #pragma once
-// Pass 8: straight-line code becomes self-contained C++ of W lanes, readable and without headers.
+// Pass 9: straight-line code becomes self-contained C++ of W lanes, readable and without headers.
 
 #include <string>
 #include <vector>

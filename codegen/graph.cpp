@@ -59,12 +59,27 @@ double expm1mx(double x) {
   return 0.5 * x * x * sum;
 }
 
+double sinmx(double x) {
+  if (!(std::abs(x) < 1)) return std::sin(x) - x;
+  double sum = 1;
+  for (int k = 12; k >= 2; --k) sum = 1 - sum * x * x / (2 * k * (2 * k + 1));
+  return -x * x * x / 6 * sum;
+}
+
+double atanmx(double x) {
+  const double z = x / (1 + std::hypot(1, x)), z2 = z * z;  // atan(x) = 2 atan(z), 2 z - x = -x z^2
+  if (!(z2 < 0.1)) return std::atan(x) - x;
+  double sum = 0;
+  for (int k = 20; k >= 0; --k) sum = 1.0 / (2 * k + 3) - sum * z2;
+  return -2 * z * z2 * sum - x * z2;
+}
+
 }  // namespace
 
 const char* name_of(Call call) {
-  static const char* const names[] = {"log", "exp", "log1p", "expm1",  "log1pmx", "expm1mx", "sin",
-                                      "cos", "tan", "asin",  "acos",   "atan",    "atan2",   "pow",
-                                      "abs", "min", "max",   "select", "keep"};
+  static const char* const names[] = {"log",    "exp", "log1p", "expm1", "log1pmx", "expm1mx", "sinmx",
+                                      "atanmx", "sin", "cos",   "tan",   "asin",    "acos",    "atan",
+                                      "atan2",  "pow", "abs",   "min",   "max",     "select",  "keep"};
   return names[static_cast<int>(call)];
 }
 
@@ -82,6 +97,10 @@ double evaluate(Call call, const std::vector<double>& a) {
       return log1pmx(a[0]);
     case Call::expm1mx:
       return expm1mx(a[0]);
+    case Call::sinmx:
+      return sinmx(a[0]);
+    case Call::atanmx:
+      return atanmx(a[0]);
     case Call::sin:
       return std::sin(a[0]);
     case Call::cos:

@@ -38,7 +38,8 @@ struct Factor {
 // Functions of a graph. select(c, a, b) is a where c > 0, else b. keep(a) is a, as a value that nothing is simplified
 // across: the author's own intermediate results that do not depend on the degrees of freedom, which are computed once
 // and read.
-// log1pmx(x) is log(1 + x) - x, expm1mx(x) is exp(x) - 1 - x, both without cancellation near 0.
+// log1pmx(x) is log(1 + x) - x, expm1mx(x) is exp(x) - 1 - x, sinmx(x) is sin(x) - x, atanmx(x) is atan(x) - x, all
+// without cancellation near 0.
 enum class Call {
   log,
   exp,
@@ -46,6 +47,8 @@ enum class Call {
   expm1,
   log1pmx,
   expm1mx,
+  sinmx,
+  atanmx,
   sin,
   cos,
   tan,

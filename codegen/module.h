@@ -38,7 +38,7 @@ struct Module {
   std::vector<NodeId> gradient;
   std::vector<NodeId> hessian;
 
-  // Set by rest_form(): q is F - I. Where `near` is -1, value holds everywhere; otherwise value (and its derivatives)
+  // Set by rest_form(): q is F - I, of a membrane or line in the axes of the element at rest. Where `near` is -1, value holds everywhere; otherwise value (and its derivatives)
   // serve states where near > 0, and `far` all others.
   bool displacement = false;
   NodeId near = -1;
@@ -60,6 +60,10 @@ struct Module {
   // changed it. Empty and -1 when none is known.
   std::vector<NodeId> projected;
   NodeId changed = -1;
+
+  // Set by find_parts(): the part of each 3-vector of q, -1 for one that is in no entry of the Hessian. Empty: the
+  // Hessian is whole; else it holds the entries within parts alone (codegen/parts.h).
+  std::vector<int> parts;
 
   // Every node that something outside the graph refers to: value, conditions, gradient, Hessian, its projection.
   std::vector<NodeId> roots() const;

@@ -1,7 +1,10 @@
 #include "codegen/prelude.h"
 
+#include <algorithm>
 #include <regex>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -37,9 +40,10 @@ std::string lanes_above(VectorType v) {
       (1 << v.lanes) - 1, builtin, v.lanes);
 }
 
-// log(1 + x) - x and exp(x) - 1 - x: series where x is small; where it is not, the function less x, in which at most
-// two bits cancel. Lanes share a branch, as arguments are small as a rule. With z = x/(2 + x),
-// log(1 + x) = 2 atanh(z) = 2 z + 2/3 z^3 + 2/5 z^5 + ..., and 2 z - x = -x z.
+// log(1 + x) - x, exp(x) - 1 - x, sin(x) - x and atan(x) - x: series where x is small; where it is not, the function
+// less x, in which few bits cancel. Lanes share a branch, as arguments are small as a rule. With z = x/(2 + x), log(1 +
+// x) = 2 atanh(z) = 2 z + 2/3 z^3 + 2/5 z^5 + ..., and 2 z - x = -x z. With z = x/(1 + sqrt(1 + x^2)), atan(x) = 2
+// atan(z), and 2 z - x = -x z^2.
 std::string remainder_function(const std::string& type, const std::string& prefix, const std::string& name) {
   const char* all_small = prefix == "s_" ? "small > 0.0" : "lanes_above(small) == all_lanes";
   std::string series;
@@ -53,6 +57,27 @@ std::string remainder_function(const std::string& type, const std::string& prefi
         "static inline {0} {1}log1pmx({0} x) {{\n  const {0} z = x/(2.0 + x), z2 = z*z;\n"
         "  {0} r = 2.0*z*z2*({2}) - x*z;\n  const {0} small = 0.04 - z2;\n"
         "  if (!({3})) r = small > 0.0 ? r : {1}log(1.0 + x) - x;\n  return r;\n}}\n",
+        type, prefix, series, all_small);
+  }
+  if (name == "sinmx") {
+    // Terms up to x^19: the first one left out is below 2^-53 of the sum for |x| < 1.
+    for (int k = 9; k >= 2; --k)
+      series = fmt::format("1.0 - x2*(1.0 / {}.0){}", 2 * k * (2 * k + 1), series.empty() ? "" : "*(" + series + ")");
+    return fmt::format(
+        "static inline {0} {1}sinmx({0} x) {{\n  const {0} x2 = x*x;\n  {0} r = x*x2*(-1.0 / 6.0)*({2});\n"
+        "  const {0} small = 1.0 - x2;\n  if (!({3})) r = small > 0.0 ? r : {1}sin(x) - x;\n  return r;\n}}\n",
+        type, prefix, series, all_small);
+  }
+  if (name == "atanmx") {
+    // Terms up to z^29: the first one left out is below 2^-53 of the sum for |x| < 1/2.
+    for (int k = 13; k >= 0; --k) {
+      const std::string term = fmt::format("1.0 / {}.0", 2 * k + 3);
+      series = k == 13 ? term : fmt::format("{} - z2*({})", term, series);
+    }
+    return fmt::format(
+        "static inline {0} {1}atanmx({0} x) {{\n  const {0} z = x/(1.0 + {1}sqrt(1.0 + x*x)), z2 = z*z;\n"
+        "  {0} r = -2.0*z*z2*({2}) - x*z2;\n  const {0} small = 0.25 - x*x;\n"
+        "  if (!({3})) r = small > 0.0 ? r : {1}atan(x) - x;\n  return r;\n}}\n",
         type, prefix, series, all_small);
   }
   // Terms up to x^16: the first one left out is below 2^-53 of the sum for |x| < 1/2.
@@ -112,13 +137,18 @@ std::string prelude(VectorType v, std::set<std::string> used) {
                    : fmt::format("typedef {} V __attribute__((vector_size({}), may_alias));\n", v.real(), v.bytes());
   for (const char* prefix : {"s_", "v_"}) {
     const std::string p = prefix;
-    const bool logarithm = used.count(p + "log1pmx") > 0, exponential = used.count(p + "expm1mx") > 0;
-    if (logarithm) used.insert(p + "log");
-    if (exponential) used.insert(p + "expm1");
-    if (p == "v_" && (logarithm || exponential)) used.insert("lanes_above");
+    const std::pair<const char*, std::vector<const char*>> callers[] = {
+        {"log1pmx", {"log"}}, {"expm1mx", {"expm1"}}, {"sinmx", {"sin"}}, {"atanmx", {"atan", "sqrt"}}};
+    for (const auto& [caller, called] : callers) {
+      if (used.count(p + caller) == 0) continue;
+      for (const char* name : called) used.insert(p + name);
+      if (p == "v_") used.insert("lanes_above");
+    }
   }
-  // In alphabetical order those that others call come first.
-  for (const std::string& function : used) {
+  // Those that others call come first.
+  std::vector<std::string> order(used.begin(), used.end());
+  std::stable_partition(order.begin(), order.end(), [](const std::string& name) { return !name.ends_with("mx"); });
+  for (const std::string& function : order) {
     if (function == "lanes_above") {
       out += v.single ? with_floats(lanes_above(v)) : lanes_above(v);
       continue;
@@ -127,7 +157,7 @@ std::string prelude(VectorType v, std::set<std::string> used) {
     bool one = prefix == "s_" || v.lanes == 1;
     std::string type = prefix == "s_" ? "double" : v.lanes == 1 ? v.real() : "V";
     std::string text = by_comparison(type, prefix, name);
-    if (text.empty() && (name == "log1pmx" || name == "expm1mx")) text = remainder_function(type, prefix, name);
+    if (text.empty() && name.ends_with("mx")) text = remainder_function(type, prefix, name);
     if (text.empty())
       text = one ? scalar_function(type, prefix, name) : name == "sqrt" ? vector_sqrt(v) : vector_function(v, name);
     out += v.single && prefix == "v_" ? with_floats(text) : text;

@@ -147,12 +147,25 @@ RestAlgebra::Scalar RestAlgebra::power(Scalar a, long num, long den) {
 RestAlgebra::Scalar RestAlgebra::power(Scalar a, Scalar b) {
   const NodeId node = graph_.power(direct(a), direct(b));
   if (is_fixed(a) && is_fixed(b)) return fixed(node);
-  if (!expands(a) || !is_fixed(b)) return opaque(node);
-  const Scalar logarithm = call(Function::log, {a});
-  const Scalar exponent = multiply(b, logarithm);
-  const Scalar made = call(Function::exp, {exponent});
-  if (expands(made)) at(made).direct = node;
-  return expands(made) ? made : opaque(node);
+  const Scalar made = call(Function::exp, {multiply(b, call(Function::log, {a}))});
+  if (!expands(made)) return opaque(node);
+  at(made).direct = node;
+  return made;
+}
+
+// Which of the two is larger at rest must be known. Where they are equal there, a sum of the kind c + 0 + r.
+RestAlgebra::Scalar RestAlgebra::larger(Scalar a, Scalar b, NodeId direct) {
+  if (!expands(a) || !expands(b) || !g_.is_constant(at(a).c) || !g_.is_constant(at(b).c)) return opaque(direct);
+  if (g_[at(a).c].constant < g_[at(b).c].constant) std::swap(a, b);
+  Part p;
+  p.op = Op::larger;
+  p.a = a;
+  p.b = b;
+  p.direct = direct;
+  p.polynomial = polynomial(a) && polynomial(b);
+  p.c = at(a).c;
+  if (at(a).c != at(b).c) p.l = at(a).l;
+  return append(std::move(p));
 }
 
 RestAlgebra::Scalar RestAlgebra::call(Function f, const std::vector<Scalar>& arguments) {
@@ -184,6 +197,24 @@ RestAlgebra::Scalar RestAlgebra::call(Function f, const std::vector<Scalar>& arg
       const Scalar made = subtract(whole, number("1"));
       at(made).direct = node;
       return made;
+    }
+    case Function::sin:
+      return function(Op::sin, a, node, g_.call(Call::sin, {c}), g_.call(Call::cos, {c}));
+    case Function::cos:
+      return function(Op::cos, a, node, g_.call(Call::cos, {c}), g_.scale(-1, g_.call(Call::sin, {c})));
+    case Function::tan: {
+      const NodeId t = g_.call(Call::tan, {c});
+      return function(Op::tan, a, node, t, g_.sum(1, {{1, g_.power(t, 2)}}));
+    }
+    case Function::atan:
+      return g_.is_constant(c, 0) ? function(Op::atan, a, node, c, g_.constant(1)) : opaque(node);
+    case Function::abs:
+      return larger(a, negate(a), node);
+    case Function::max:
+      return larger(a, arguments[1], node);
+    case Function::min: {
+      const Scalar made = negate(larger(negate(a), negate(arguments[1]), graph_.negate(node)));
+      return expands(made) ? made : opaque(node);
     }
     default:
       return opaque(node);

@@ -46,7 +46,25 @@ class RestAlgebra {
   NodeId remainder(Scalar s);
 
  private:
-  enum class Op { fixed, input, scale, sum, product, square, reciprocal, root, power, log, exp, opaque };
+  enum class Op {
+    fixed,
+    input,
+    scale,
+    sum,
+    product,
+    square,
+    larger,
+    reciprocal,
+    root,
+    power,
+    log,
+    exp,
+    sin,
+    cos,
+    tan,
+    atan,
+    opaque
+  };
 
   // An expansion. Its change d = c + l - value at rest and its remainder r become nodes when asked for.
   struct Part {
@@ -70,6 +88,7 @@ class RestAlgebra {
   Scalar opaque(NodeId direct);
   Scalar sum(Scalar a, Scalar b, double sign);
   Scalar scaled(NodeId factor, Scalar a, NodeId direct);
+  Scalar larger(Scalar a, Scalar b, NodeId direct);
   Scalar function(Op op, Scalar a, NodeId direct, NodeId c, NodeId slope);
   bool is_fixed(Scalar s) const { return at(s).op == Op::fixed; }
 

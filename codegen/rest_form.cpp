@@ -8,6 +8,7 @@
 #include "codegen/rest_algebra.h"
 #include "symbolic/elaborate.h"
 #include "symbolic/ginac_algebra.h"
+#include "symbolic/isotropy.h"
 #include "symbolic/jet.h"
 #include "symbolic/sample_states.h"
 
@@ -41,7 +42,7 @@ AtRest exactly_at_rest(const Energy& energy, const std::string& case_name) try {
 // Whether the module was replaced by its expansion about rest.
 bool expand_about_rest(Module& module) {
   const Energy& energy = *module.energy;
-  if (energy.kind != Energy::Kind::density || energy.geometry != "solid") return false;
+  if (energy.kind != Energy::Kind::density) return false;
   Module made = empty_module(energy, module.case_name);
   if (made.stretches && energy.geometry != "solid") return false;  // the runtime knows s, not s - 1, of these
   made.displacement = true;
@@ -54,6 +55,8 @@ bool expand_about_rest(Module& module) {
   AtRest rest{g.is_constant(at_rest, 0), constant_zero(g, algebra.slope_at_rest(parts.value))};
   if (!rest.no_value || !rest.no_slope) rest = exactly_at_rest(energy, module.case_name);
   if (!rest.no_slope) return false;
+  // In the axes of an element at rest a law tied to those of space is another.
+  if (energy.geometry != "solid" && !is_frame_invariant(energy, module.case_name)) return false;
   const NodeId remainder = algebra.remainder(parts.value);
   made.value = rest.no_value ? remainder : g.add(at_rest, remainder);
   for (const int margin : parts.active) made.active.push_back(algebra.direct(margin));

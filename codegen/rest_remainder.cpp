@@ -33,8 +33,17 @@ void RestAlgebra::need_remainder(Scalar s) {
     case Op::sum:
       need_remainder(p.a);
       return need_remainder(p.b);
+    case Op::larger:
+      if (at(p.a).c == at(p.b).c) break;
+      need_remainder(p.a);
+      return need_remainder(p.b);
     default:
       break;
+  }
+  if (p.op == Op::larger) {
+    const Scalar first = p.a, second = p.b;
+    need_change(first);
+    return need_change(second);
   }
   const bool binary = p.op == Op::product || p.op == Op::square;
   const Scalar a = p.a, b = p.b;
@@ -66,7 +75,7 @@ void RestAlgebra::spread_change(Scalar s) {
   if (p.needs_remainder || p.op == Op::fixed || p.op == Op::input) return;
   if (p.l.empty() || (p.op == Op::sum && cancels(p))) return need_remainder(s);
   const Scalar a = p.a, b = p.b;
-  const bool binary = p.op == Op::sum || p.op == Op::product || p.op == Op::square;
+  const bool binary = p.op == Op::sum || p.op == Op::product || p.op == Op::square || p.op == Op::larger;
   need_change(a);
   if (binary) need_change(b);
 }
@@ -108,6 +117,17 @@ NodeId RestAlgebra::r_of(Scalar s) {
       r = g_.sum(0, std::move(terms));
       break;
     }
+    case Op::larger: {
+      const Part &a = at(p.a), &b = at(p.b);
+      if (a.c == b.c) {
+        r = g_.call(Call::max, {d_of(p.a), d_of(p.b)});
+      } else {  // less the change of a to first order
+        const NodeId less = g_.subtract(linear(p.b), linear(p.a));
+        const NodeId other = g_.sum(g_[b.c].constant - g_[a.c].constant, {{1, r_of(p.b)}, {1, less}});
+        r = g_.call(Call::max, {r_of(p.a), other});
+      }
+      break;
+    }
     case Op::opaque:
       throw std::logic_error("rest expansion of an operation that has none");
     default:
@@ -136,6 +156,11 @@ NodeId RestAlgebra::d_of(Scalar s) {
       case Op::square:
         d = g_.multiply(d_of(p.a), g_.sum(0, {{1, d_of(p.a)}, {2, at(p.a).c}}));
         break;
+      case Op::larger: {
+        const double apart = g_[at(p.b).c].constant - g_[p.c].constant;
+        d = g_.call(Call::max, {d_of(p.a), g_.sum(apart, {{1, d_of(p.b)}})});
+        break;
+      }
       case Op::product:
         if (g_.is_constant(at(p.b).c, 0))  // (ca + da) db
           d = g_.multiply(changed(p.a), d_of(p.b));
@@ -158,6 +183,14 @@ NodeId RestAlgebra::slope(const Part& p) {
       return g_.power(c, -1);
     case Op::exp:
       return g_.call(Call::exp, {c});
+    case Op::sin:
+      return g_.call(Call::cos, {c});
+    case Op::cos:
+      return g_.scale(-1, g_.call(Call::sin, {c}));
+    case Op::tan:
+      return g_.sum(1, {{1, g_.power(g_.call(Call::tan, {c}), 2)}});
+    case Op::atan:
+      return g_.constant(1);
     default:
       return g_.product(static_cast<double>(p.num) / p.den, {{c, p.num - p.den, p.den}});
   }
@@ -175,6 +208,18 @@ NodeId RestAlgebra::change_of_function(const Part& p) {
       return g_.call(Call::log1p, {ratio(p)});
     case Op::exp:
       return g_.multiply(g_.call(Call::exp, {c}), g_.call(Call::expm1, {d}));
+    case Op::sin:
+    case Op::cos: {  // 2 cos(c + d/2) sin(d/2) and -2 sin(c + d/2) sin(d/2)
+      const NodeId half = g_.scale(0.5, d), middle = g_.add(c, half);
+      const NodeId turned = g_.call(p.op == Op::sin ? Call::cos : Call::sin, {middle});
+      return g_.product(p.op == Op::sin ? 2 : -2, {{turned}, {g_.call(Call::sin, {half})}});
+    }
+    case Op::tan: {  // (1 + t^2) tan(d)/(1 - t tan(d)), t = tan(c)
+      const NodeId t = g_.call(Call::tan, {c}), change = g_.call(Call::tan, {d});
+      return g_.divide(g_.multiply(slope(p), change), g_.sum(1, {{-1, g_.multiply(t, change)}}));
+    }
+    case Op::atan:
+      return g_.call(Call::atan, {d});
     default: {
       const NodeId logarithm = g_.call(Call::log1p, {ratio(p)});
       const NodeId change = g_.call(Call::expm1, {g_.scale(static_cast<double>(p.num) / p.den, logarithm)});
@@ -197,6 +242,22 @@ NodeId RestAlgebra::remainder_of_function(const Part& p) {
       return g_.call(Call::log1pmx, {ratio(p)});
     case Op::exp:
       return g_.multiply(g_.call(Call::exp, {c}), g_.call(Call::expm1mx, {d}));
+    case Op::sin:
+    case Op::cos: {  // f'(c) (sin(d) - d) - 2 f(c) sin(d/2)^2
+      const NodeId at_rest = g_.call(p.op == Op::sin ? Call::sin : Call::cos, {c});
+      const NodeId even = g_.product(-2, {{at_rest}, {g_.call(Call::sin, {g_.scale(0.5, d)}), 2}});
+      return g_.add(g_.multiply(slope(p), g_.call(Call::sinmx, {d})), even);
+    }
+    case Op::tan: {  // (1 + t^2) ((tan(d) - d) + t d tan(d))/(1 - t tan(d)), t = tan(c)
+      const NodeId t = g_.call(Call::tan, {c}), change = g_.call(Call::tan, {d});
+      const NodeId half = g_.call(Call::sin, {g_.scale(0.5, d)});
+      const NodeId less = g_.add(g_.call(Call::sinmx, {d}), g_.product(2, {{d}, {half, 2}}));
+      const NodeId curved = g_.divide(less, g_.call(Call::cos, {d}));
+      const NodeId sum = g_.add(curved, g_.product(1, {{t}, {d}, {change}}));
+      return g_.divide(g_.multiply(slope(p), sum), g_.sum(1, {{-1, g_.multiply(t, change)}}));
+    }
+    case Op::atan:
+      return g_.call(Call::atanmx, {d});
     default: {
       // With x = d/c, k the exponent and y = k log(1 + x): (1 + x)^k - 1 - k x = (e^y - 1 - y) + k (log(1 + x) - x).
       const double k = static_cast<double>(p.num) / p.den;

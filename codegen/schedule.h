@@ -1,5 +1,5 @@
 #pragma once
-// Pass 7: from the graph to straight-line code.
+// Pass 8: from the graph to straight-line code.
 //
 // Establishes a program in which every n-ary sum and product is a chain of two-operand instructions; what depends on
 // parameters or rest and lag data alone stands apart (lifetimes), so that it can be computed once; powers, roots and

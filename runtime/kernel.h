@@ -13,7 +13,7 @@
 extern "C" {
 #endif
 
-#define ERGON_KERNEL_ABI 5
+#define ERGON_KERNEL_ABI 6
 
 enum ErgonRole { ERGON_PARAM = 0, ERGON_REST = 1, ERGON_LAG = 2 };
 
@@ -83,7 +83,9 @@ typedef struct ErgonKernel {
 
   const char* const* point_names; /* stencil: [points], the names of its dofs; 0 for a density */
 
-  int displacement; /* 1: q of a density is F - I, so the weights are applied to x - X */
+  /* 1: q of a density is F - I, so the weights are applied to x - X; of a membrane or line in the axes of the element at
+     rest, where I is the first columns of the identity */
+  int displacement;
 
   /* An isotropic density; otherwise 0. Blocks of the Hessian with respect to F at F = diag(s), s[q_vectors][lanes]:
      their order is in codegen/principal.h; 12, 7 or 2 of them for 3, 2 or 1 vectors. */
@@ -97,6 +99,11 @@ typedef struct ErgonKernel {
 
   /* Where this is not 0 the kernel is one in single precision: these are its entry points, and those above are 0. */
   const ErgonSingle* single;
+
+  /* Where this is not 0 the Hessian falls apart: parts[q_vectors], the part of each 3-vector of q, counted from 0 in the
+     order of their first vectors, -1 for one that is in no entry. `hessian` then writes the lower triangles of the parts,
+     each packed by rows over its vectors in ascending order, one after the other. */
+  const int* parts;
 
   /* 1: a density in principal stretches. In conditions, value, gradient and hessian q is then s[q_vectors][lanes], the
      singular values of F (signs as in runtime/lanes/svd3.h), or, with `displacement`, those less 1, and derivatives are

@@ -134,6 +134,7 @@ lanes::Stencils Potential::Impl::view() const {
           or_null(axis),
           or_null(axis_nodes),
           weights.data(),
+          or_null(frames),
           volumes.data(),
           elements.data(),
           uniforms.data(),

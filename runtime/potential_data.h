@@ -34,6 +34,7 @@ struct Potential::Impl {
   std::vector<double> axis;     // lanes::Stencils::axis, empty for null
   std::vector<int> axis_nodes;
   AlignedVector<double> weights;   // lanes::Stencils::weights
+  AlignedVector<double> frames;    // lanes::Stencils::frames, empty for null
   AlignedVector<double> volumes;   // [block][quadrature][lanes]
   AlignedVector<double> raw;       // [block][kernel->raw][lanes]
   AlignedVector<double> elements;  // [block][kernel->elements][lanes]

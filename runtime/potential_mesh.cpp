@@ -46,6 +46,20 @@ Eigen::MatrixXd local_map(const Eigen::Matrix3Xd& nodes, const Eigen::MatrixXd& 
   return local;
 }
 
+// The axes of that frame in space, as columns, completed to a right-handed three.
+Eigen::Matrix3d local_axes(const Eigen::Matrix3Xd& nodes, const Eigen::MatrixXd& reference) {
+  const Eigen::Matrix3Xd map = nodes * reference;
+  const Eigen::Vector3d first = map.col(0).normalized();
+  Eigen::Vector3d second = first.unitOrthogonal();
+  if (map.cols() == 2) {
+    const Eigen::Vector3d along = map.col(1);
+    second = (along - first.dot(along) * first).normalized();
+  }
+  Eigen::Matrix3d axes;
+  axes << first, second, first.cross(second);
+  return axes;
+}
+
 // Fills `axis` and `nodes` as lanes::Stencils wants them.
 void factor_table(Element element, std::vector<double>& axis, std::vector<int>& nodes) {
   const std::vector<double> points = gauss_points(3).points;
@@ -117,6 +131,7 @@ Potential Potential::on_mesh(std::string name, Kernel kernel, const Mesh& mesh, 
   const size_t columns = constant ? static_cast<size_t>(n - 1) : vectors;
   d.weights.resize(blocks * points * vectors * columns * width);
   d.volumes.resize(blocks * points * width);
+  if (d.kernel->displacement && dimension < 3) d.frames.resize(blocks * points * 9 * width);
   std::vector<int> ordered(d.stencils.size());
   std::vector<int> order(static_cast<size_t>(n));
   Eigen::Matrix3Xd nodes(3, n);
@@ -130,6 +145,10 @@ Potential Potential::on_mesh(std::string name, Kernel kernel, const Mesh& mesh, 
       const Eigen::MatrixXd map = local_map(nodes, rule.gradients[p]), inverse = map.inverse();
       const size_t place = lane / width * points + p, l = lane % width;
       d.volumes[place * width + l] = map.determinant() * rule.weights[p];
+      if (!d.frames.empty()) {
+        const Eigen::Matrix3d axes = local_axes(nodes, rule.gradients[p]);
+        for (size_t i = 0; i < 9; ++i) d.frames[(place * 9 + i) * width + l] = axes.data()[i];
+      }
       double* out = d.weights.data() + place * vectors * columns * width + l;
       if (constant) {
         const Eigen::MatrixXd gradients = rule.gradients[p] * inverse;

@@ -33,9 +33,7 @@ ClnNumber value(const Energy& energy, const std::string& case_name, const ExactI
   return elaborate(energy, case_name, algebra).value;
 }
 
-}  // namespace
-
-bool is_isotropic(const Energy& energy, const std::string& case_name) {
+bool is_invariant(const Energy& energy, const std::string& case_name, bool of_material) {
   if (energy.kind != Energy::Kind::density) return false;
   const Symbol& F = *energy.with_role(Role::dof).front();
   StateSampler sampler;
@@ -45,7 +43,7 @@ bool is_isotropic(const Energy& energy, const std::string& case_name) {
     ExactInputs turned = state;
     std::vector<Rational>& f = turned.at(F.name);
     f = product(sampler.rotation(), f, 3);
-    f = product(f, material_rotation(sampler, F.shape.cols), static_cast<size_t>(F.shape.cols));
+    if (of_material) f = product(f, material_rotation(sampler, F.shape.cols), static_cast<size_t>(F.shape.cols));
     const ClnNumber a = value(energy, case_name, state), b = value(energy, case_name, turned);
     if (!a.defined && !b.defined) continue;
     if (!a.defined || !b.defined) return false;
@@ -53,6 +51,14 @@ bool is_isotropic(const Energy& energy, const std::string& case_name) {
     ++seen;
   }
   return seen == wanted;
+}
+
+}  // namespace
+
+bool is_isotropic(const Energy& energy, const std::string& case_name) { return is_invariant(energy, case_name, true); }
+
+bool is_frame_invariant(const Energy& energy, const std::string& case_name) {
+  return is_invariant(energy, case_name, false);
 }
 
 }  // namespace ergon

@@ -1,5 +1,5 @@
 #pragma once
-// Whether a density is isotropic, found from its values alone, however it is written.
+// Whether a density is isotropic, or invariant under rotation, found from its values alone, however it is written.
 
 #include <string>
 
@@ -11,5 +11,8 @@ namespace ergon {
 // rotations (Cayley's formula) within the declared ranges, in 50 digits. False for a stencil energy, for a density tied
 // to rest or lag data that turn with neither, and when fewer than three states have a finite value.
 bool is_isotropic(const Energy& energy, const std::string& case_name);
+
+// psi(R F) = psi(F), found in the same way: the density sees strain alone.
+bool is_frame_invariant(const Energy& energy, const std::string& case_name);
 
 }  // namespace ergon

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "codegen/parts.h"
 #include "runtime/aligned.h"
 #include "runtime/lanes/lanes.h"
 #include "tools/accuracy_states.h"
@@ -83,9 +84,14 @@ class Evaluation {
     operations.evaluate_at(k_, q.data(), e.data(), u.data(), value.data(), margin.data(), gradient.data(),
                            hessian.data());
     result[0] = {value[0]};
-    auto h = [&](size_t a, size_t b) -> double {
-      return hessian[(std::max(a, b) * (std::max(a, b) + 1) / 2 + std::min(a, b)) * width];
-    };
+    std::vector<double> whole(packed, 0);
+    const std::vector<Entry> entries_in_order = hessian_entries(k_);
+    for (size_t i = 0; i < entries_in_order.size(); ++i) {
+      const auto row = static_cast<size_t>(entries_in_order[i].row),
+                 column = static_cast<size_t>(entries_in_order[i].column);
+      whole[row * (row + 1) / 2 + column] = hessian[i * width];
+    }
+    auto h = [&](size_t a, size_t b) { return whole[std::max(a, b) * (std::max(a, b) + 1) / 2 + std::min(a, b)]; };
     const size_t dofs = k_.density ? m : 3 * n;
     for (size_t i = 0; i < dofs; ++i) {
       double sum = 0;

@@ -19,8 +19,8 @@ struct Options {
   std::string energy, catalogue, dump, precision = "double";
 };
 
-const std::vector<std::string> passes = {"lower",     "rest",      "frontier", "differentiate",
-                                         "structure", "principal", "schedule", "emit"};
+const std::vector<std::string> passes = {"lower",     "rest",  "frontier", "differentiate", "structure",
+                                         "principal", "parts", "schedule", "emit"};
 
 int compile_one(const Options& asked, std::ostream& out) {
   if (!asked.dump.empty()) chosen("--dump", asked.dump, passes);

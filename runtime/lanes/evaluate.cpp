@@ -3,7 +3,7 @@
 #include "runtime/lanes/evaluate_differences.h"
 #include "runtime/lanes/evaluate_hessian.h"
 #include "runtime/lanes/evaluate_isotropic.h"
-#include "runtime/lanes/evaluate_projection.h"
+#include "runtime/lanes/evaluate_parts.h"
 #include "runtime/lanes/number_blocks.h"
 #include "runtime/lanes/stretch_frame.h"
 
@@ -92,6 +92,7 @@ void value_of(const Stencils& s, BlockRange range, const double* x, ChunkResult*
     for (int p = 0; p < s.quadrature; ++p) {
       const Weights<S> w(s, block, p);
       form_q<S>(s, w, points, q);
+      Frame<S>(s, block, p).to_element(q);
       kernel_value<S>(s, block, q, value, margin);
       sum += w.times_volume(load(value));
       if (s.kernel->requires_ > 0) tally.limit(margin, count);
@@ -116,7 +117,10 @@ void gradient_of(const Stencils& s, BlockRange range, const double* x, double* g
     for (int p = 0; p < s.quadrature; ++p) {
       const Weights<S> w(s, block, p);
       form_q<S>(s, w, points, q);
+      const Frame<S> frame(s, block, p);
+      frame.to_element(q);
       kernel_gradient<S>(s, block, q, value, by_q);
+      frame.to_space(by_q);
       sum += w.times_volume(load(value));
       chain_gradient<S>(s, w, by_q, by_point);
     }
@@ -150,12 +154,15 @@ void hessian_of(const Stencils& s, BlockRange range, const ChunkBlocks& blocks, 
   Tally tally;
   alignas(64) Scalar q[S::kSize * kWidth], value[kWidth], by_q[S::kSize * kWidth];
   Vector3 points[S::kMost], by_point[S::kMost];
-  const int n = S::points(s), pairs = n * (n + 1) / 2, batch = batch_of<S>(s), size = S::kPacked * kWidth;
+  const int n = S::points(s), pairs = n * (n + 1) / 2, batch = batch_of<S>(s);
+  const Parts parts = parts_of<S>(s);
+  const int size = (parts.count > 0 ? parts.first[parts.count] : S::kPacked) * kWidth;
   const bool known = projection != kProjectNone && entries_of(s).projected != nullptr;
   const bool project = projection != kProjectNone && !s.kernel->psd_hessian && !known;
   const bool closed_form = project && entries_of(s).principal != nullptr;
   const Negative mode = projection == kProjectAbsolute ? Negative::absolute : Negative::clamp;
   ProjectionBatch<S::kSize> indefinite(mode);
+  PartProjection indefinite_parts(mode);
   const Differences differences = find_differences<S>(s);
   alignas(64) Scalar replaced[kWidth];
   long changed = 0;
@@ -173,6 +180,8 @@ void hessian_of(const Stencils& s, BlockRange range, const ChunkBlocks& blocks, 
       for (int p = 0; p < s.quadrature; ++p, packed += size) {
         const Weights<S> w(s, block, p);
         form_q<S>(s, w, points, q);
+        const Frame<S> frame(s, block, p);
+        frame.to_element(q);
         if (known) {
           const Scalar negative = mode == Negative::absolute ? 1 : 0;
           entries_of(s).projected(q, data_of(s, block), uniforms_of(s), negative, value, by_q, packed, replaced);
@@ -181,24 +190,34 @@ void hessian_of(const Stencils& s, BlockRange range, const ChunkBlocks& blocks, 
           if constexpr (S::kDensity)
             changed += __builtin_popcount(stretch_kernel<S>(s, block).hessian(q, project, mode, value, by_q, packed) &
                                           ((1u << count) - 1));
+          frame.hessian_to_space(parts, packed);
         } else if (closed_form) {
           entries_of(s).gradient(q, data_of(s, block), uniforms_of(s), value, by_q);
-          changed += closed_form_hessian<S>(s, block, count, q, mode, packed);
+          changed += closed_form_hessian<S>(s, block, count, frame, q, mode, packed);
         } else {
           entries_of(s).hessian(q, data_of(s, block), uniforms_of(s), value, by_q, packed);
-          if (project) indefinite.add(packed, ~definite<S::kSize>(packed) & ((1u << count) - 1));
+          frame.hessian_to_space(parts, packed);
+          if (project && parts.count > 0) {
+            indefinite_parts.add(parts, packed, (1u << count) - 1);
+          } else if (project) {
+            indefinite.add(packed, ~definite<S::kSize>(packed) & ((1u << count) - 1));
+          }
         }
         sum += w.times_volume(load(value));
+        frame.to_space(by_q);
         chain_gradient<S>(s, w, by_q, by_point);
       }
       tally.add(sum, count);
       if (gradient != nullptr) scatter_points<S>(s, block, count, by_point, gradient);
     }
     indefinite.run();
+    if (parts.count > 0) indefinite_parts.run();
     packed = scratch;
     for (int block = first; block < last; ++block, packed += s.quadrature * size) {
       if (block + 1 < last) prefetch(s.slots + (block + 1L) * pairs * kWidth, 4L * kWidth * pairs);
-      if (differences.apply) {
+      if (parts.count > 0) {
+        part_matrix<S>(s, parts, block, packed, element, element + 9L * kWidth * pairs);
+      } else if (differences.apply) {
         difference_matrix<S>(differences, packed, element);
       } else {
         element_matrix<S>(s, block, packed, element, element + 9L * kWidth * pairs);
@@ -207,7 +226,7 @@ void hessian_of(const Stencils& s, BlockRange range, const ChunkBlocks& blocks, 
     }
   }
   flush_sums(room.sums, blocks, values);
-  *result = tally.result(changed + indefinite.changed());
+  *result = tally.result(changed + indefinite.changed() + indefinite_parts.changed());
 }
 
 template <int Q>

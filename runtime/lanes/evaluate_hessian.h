@@ -1,6 +1,7 @@
 #pragma once
 // From q-Hessians to element matrices, and from these to the sums of a chunk. Included only by files in runtime/lanes.
 
+#include "runtime/lanes/evaluate_parts.h"
 #include "runtime/lanes/evaluate_table.h"
 
 namespace ergon::lanes {
@@ -61,9 +62,27 @@ inline void element_matrix(const Stencils& s, int block_index, Scalar* packed, S
   }
 }
 
+// The same of Hessians that fall apart.
+template <class S>
+inline void part_matrix(const Stencils& s, const Parts& parts, int block_index, const Scalar* packed, Scalar* element,
+                        Scalar* room) {
+  if constexpr (S::kTable) {
+    Scalar* const whole = room + table_room<S>(s);
+    for (int p = 0; p < s.quadrature; ++p, packed += static_cast<long>(parts.first[parts.count]) * kWidth) {
+      join_parts<S>(parts, packed, whole + static_cast<long>(p) * S::kPacked * kWidth);
+    }
+    sum_table_products<S>(s, block_index, whole, element, room);
+  } else {
+    sum_part_products<S>(s, parts, block_index, packed, element);
+  }
+}
+
 template <class S>
 inline int element_room(const Stencils& s) {
-  if constexpr (S::kTable) return table_room<S>(s);
+  if constexpr (S::kTable) {
+    const int whole = s.kernel->parts != nullptr ? s.quadrature * S::kPacked * kWidth : 0;
+    return table_room<S>(s) + whole;
+  }
   return 0;
 }
 

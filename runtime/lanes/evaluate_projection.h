@@ -20,6 +20,8 @@ class ProjectionBatch {
     if (lanes != 0) waiting_[size_++] = {packed, lanes};
   }
 
+  bool full() const { return size_ == kCapacity; }
+
   // Projects all that wait, in place.
   void run() {
     sort_by_lanes();

@@ -176,6 +176,7 @@ inline void prefetch_block(const Stencils& s, int block) {
     const long weights = vector * S::kVectors * (S::kTable ? S::kVectors : n - 1);
     prefetch(s.weights + places * (weights / 8), weights * s.quadrature);
     prefetch(s.volumes + places * kWidth, vector * s.quadrature);
+    if (s.frames != nullptr) prefetch(s.frames + places * 9 * kWidth, vector * 9 * s.quadrature);
   }
   if constexpr (S::kSource == Source::given) {
     const long weights = static_cast<long>(S::kVectors) * (n + 1);

@@ -38,6 +38,9 @@ struct Stencils {
   // minus the sum of the others. A stencil energy: [q_vectors][points], or, where each stencil has weights of its own,
   // [block][q_vectors][points + 1][W]; the last is the sum of the others.
   const double* weights;
+  // Of a membrane or line whose q is F - I: its three axes at rest, the first its tangents, [block][quadrature][9][W];
+  // else null.
+  const double* frames;
   const double* volumes;   // density: [block][quadrature][W]
   const double* elements;  // [block][kernel->elements][W]
   const double* uniforms;  // [kernel->uniforms]

@@ -17,6 +17,21 @@ int lanes_of(const Stencils& s, int block) {
   return (left - (block - first) + n - 1) / n;
 }
 
+// Whether points a and b have weights in one part of a Hessian that falls apart (runtime/kernel.h).
+inline bool coupled(const Stencils& s, int a, int b) {
+  const ErgonKernel& kernel = *s.kernel;
+  if (kernel.parts == nullptr || kernel.density != 0 || s.combined) return true;
+  for (int k = 0; k < kernel.q_vectors; ++k) {
+    for (int l = 0; l < kernel.q_vectors; ++l) {
+      if (kernel.parts[k] >= 0 && kernel.parts[k] == kernel.parts[l] && s.weights[k * s.points + a] != 0 &&
+          s.weights[l * s.points + b] != 0) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
 // Calls f(row, column, block, pair, lane) for all pairs of points; row < 0 or column < 0 for a fixed vertex.
 template <class F>
 inline void each_pair(int points, BlockRange range, const int* places, F f) {
@@ -35,11 +50,15 @@ inline int number_chunk_blocks(const Stencils& s, BlockRange range, const ChunkN
   const long first = static_cast<long>(range.first) * points * kWidth;
   const long size = static_cast<long>(range.last - range.first) * points * kWidth;
   for (long i = 0; i < size; ++i) n.places[i] = n.place[s.vertices[first + i]];
+  bool kept[kMaxPoints * (kMaxPoints + 1) / 2];  // by pair: couplings that are identically zero have no place
+  for (int a = 0, pair = 0; a < points; ++a) {
+    for (int b = 0; b <= a; ++b, ++pair) kept[pair] = coupled(s, a, b);
+  }
 
   // A column of the table is `words` words; a row is a bit of each.
   const auto word_of = [&](int row, int column) { return column * words + (row >> 6); };
-  each_pair(points, range, n.places, [&](int a, int b, int, int, int) {
-    if (a < 0 || b < 0) return;
+  each_pair(points, range, n.places, [&](int a, int b, int, int pair, int) {
+    if (a < 0 || b < 0 || !kept[pair]) return;
     const int row = a < b ? b : a, column = a < b ? a : b;
     n.bits[word_of(row, column)] |= Word{1} << (row & 63);
   });
@@ -58,7 +77,7 @@ inline int number_chunk_blocks(const Stencils& s, BlockRange range, const ChunkN
     if (pair == 0 && l == 0) real = lanes_of(s, block);
     const long place = static_cast<long>(block) * pairs + pair;
     int slot = count;
-    if (a >= 0 && b >= 0 && l < real) {
+    if (a >= 0 && b >= 0 && kept[pair] && l < real) {
       const int row = a < b ? b : a, column = a < b ? a : b, w = word_of(row, column);
       slot = n.rank[w] + __builtin_popcountll(n.bits[w] & ((Word{1} << (row & 63)) - 1));
       if (a < b) n.turned[place] |= static_cast<unsigned short>(1u << l);

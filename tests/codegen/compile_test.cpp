@@ -186,7 +186,7 @@ TEST_F(CompileTest, EveryPassCanBeLookedAt) {
   };
   generate(energy, options);
   EXPECT_THAT(passes, ::testing::ElementsAre("lower", "rest", "frontier", "differentiate", "structure", "principal",
-                                             "schedule", "emit"));
+                                             "parts", "schedule", "emit"));
 }
 
 TEST(ContentHash, SeesEveryByte) {

@@ -3,6 +3,8 @@
 #include <cstdlib>
 #include <new>
 
+#include "codegen/parts.h"
+
 #include "runtime/lanes/lanes.h"
 
 namespace ergon::testing {
@@ -105,13 +107,19 @@ std::vector<KernelValue> evaluate_kernel(const Energy& energy, const ErgonKernel
       v.require = require[lane];
       v.gradient.assign(static_cast<size_t>(n), 0);
       v.hessian.assign(static_cast<size_t>(n * n), 0);
-      for (int i = 0; i < m * (m + 1) / 2; ++i) v.q_hessian.push_back(hessian[i * w + lane]);
+      v.q_hessian.assign(static_cast<size_t>(m * (m + 1) / 2), 0);
+      const std::vector<Entry> entries = hessian_entries(k);
+      for (size_t i = 0; i < entries.size(); ++i)
+        v.q_hessian[static_cast<size_t>(entries[i].row * (entries[i].row + 1) / 2 + entries[i].column)] =
+            hessian[static_cast<int>(i) * w + lane];
       for (int mode = 0; mode < 2 && k.projected != nullptr; ++mode) {
         v.changed[mode] = changed[mode * w + lane] > 0;
         for (int i = 0; i < m * (m + 1) / 2; ++i)
           v.projected[mode].push_back((mode ? absolute : clamped)[i * w + lane]);
       }
-      auto h = [&](int a, int b) { return hessian[(a >= b ? a * (a + 1) / 2 + b : b * (b + 1) / 2 + a) * w + lane]; };
+      auto h = [&](int a, int b) {
+        return v.q_hessian[static_cast<size_t>(a >= b ? a * (a + 1) / 2 + b : b * (b + 1) / 2 + a)];
+      };
       auto at = [&](int r, int c) { return j[static_cast<size_t>(r)][static_cast<size_t>(c)]; };
       for (int c = 0; c < n; ++c)
         for (int r = 0; r < m; ++r) v.gradient[static_cast<size_t>(c)] += at(r, c) * gradient[r * w + lane];

@@ -145,6 +145,24 @@ TEST(Laws, MembranesInUniaxialTension) {
   }
 }
 
+// The membrane is the solid with the stretch of the thickness at which nothing acts across it.
+TEST(Laws, ANeoHookeanMembraneIsTheSolidWithoutStressAcross) {
+  const double E = 8, nu = 0.3, h = 0.5, mu = E / (2 * (1 + nu)), la = E * nu / ((1 + nu) * (1 - 2 * nu)) + mu;
+  const std::vector<double> states[] = {
+      {1.3, 0.2, -0.1, 0.4, 0.9, 0.3}, {0.6, 0, 0.7, -0.5, 0.4, 0.2}, {2.5, 0.1, 0, 0.3, 3, -1}};
+  for (const std::vector<double>& F : states) {
+    const double n[] = {F[1] * F[5] - F[2] * F[4], F[2] * F[3] - F[0] * F[5], F[0] * F[4] - F[1] * F[3]};
+    const double J = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]), s = J * (mu + la) / (mu + la * J * J);
+    std::vector<double> whole = F;
+    for (const double c : n) whole.push_back(s * c / J);
+    const ReferenceValue thin = at("neo_hookean_membrane", {{"F", F}, {"E", {E}}, {"nu", {nu}}, {"h", {h}}});
+    const ReferenceValue thick = at("stable_neo_hookean", {{"F", whole}, {"E", {E}}, {"nu", {nu}}});
+    EXPECT_NEAR(thin.value, h * thick.value, 1e-14 * thin.value);
+    for (size_t i = 0; i < 6; ++i) EXPECT_NEAR(thin.gradient[i], h * thick.gradient[i], 1e-14 * E);
+    for (size_t i = 6; i < 9; ++i) EXPECT_NEAR(thick.gradient[i], 0, 1e-14 * E);
+  }
+}
+
 TEST(Laws, AClothOfBaraffAndWitkinResistsStretchAndShear) {
   const ReferenceValue v = at("baraff_witkin", {{"F", {2, 0, 0, 1.5, 2, 0}}, {"ku", {3}}, {"kv", {5}}, {"ks", {7}}});
   EXPECT_NEAR(v.value, 3.0 / 2 + 5.0 / 2 * 2.25 + 7.0 / 2 * 9, 1e-13);
