@@ -145,9 +145,10 @@ TEST_F(CommandLine, CompilesOnceAndDumpsPasses) {
                                       "\\([0-9]+ divisions\\); compiled in [0-9.]+ s\n"));
   EXPECT_THAT(ergon("compile my.energy").out, HasSubstr("; cached, checked in "));
   EXPECT_GT(ergon("compile my.energy --dump differentiate").out.size(), 20u);
-  expect("compile my.energy --dump diferentiate", 2,
-         "--dump: 'diferentiate' is none of lower, rest, frontier, differentiate, structure, principal, schedule, "
-         "emit; did you mean 'differentiate'?");
+  expect(
+      "compile my.energy --dump diferentiate", 2,
+      "--dump: 'diferentiate' is none of lower, rest, frontier, differentiate, structure, principal, parts, schedule, "
+      "emit; did you mean 'differentiate'?");
   expect("compile", 2, "'ergon compile' needs an energy, or --catalogue FOLDER");
 }
 
