@@ -11,8 +11,8 @@ namespace ergon {
 
 // Per lane, that is per stencil or point of quadrature; of prepare_uniforms per material.
 struct EntryCost {
-  std::string entry;  // "prepare_uniforms", "prepare_elements", "conditions", "value", "gradient", "hessian",
-                      // "principal", "projected"
+  std::string entry;   // "prepare_uniforms", "prepare_elements", "conditions", "value", "gradient", "hessian",
+                       // "principal", "projected"
   int operations = 0;  // all of the following three among them
   int divisions = 0;
   int roots = 0;

@@ -38,8 +38,8 @@ struct Module {
   std::vector<NodeId> gradient;
   std::vector<NodeId> hessian;
 
-  // Set by rest_form(): q is F - I, of a membrane or line in the axes of the element at rest. Where `near` is -1, value holds everywhere; otherwise value (and its derivatives)
-  // serve states where near > 0, and `far` all others.
+  // Set by rest_form(): q is F - I, of a membrane or line in the axes of the element at rest. Where `near` is -1, value
+  // holds everywhere; otherwise value (and its derivatives) serve states where near > 0, and `far` all others.
   bool displacement = false;
   NodeId near = -1;
   struct Far {

@@ -83,8 +83,8 @@ typedef struct ErgonKernel {
 
   const char* const* point_names; /* stencil: [points], the names of its dofs; 0 for a density */
 
-  /* 1: q of a density is F - I, so the weights are applied to x - X; of a membrane or line in the axes of the element at
-     rest, where I is the first columns of the identity */
+  /* 1: q of a density is F - I, so the weights are applied to x - X; of a membrane or line in the axes of the element
+     at rest, where I is the first columns of the identity */
   int displacement;
 
   /* An isotropic density; otherwise 0. Blocks of the Hessian with respect to F at F = diag(s), s[q_vectors][lanes]:
@@ -100,9 +100,9 @@ typedef struct ErgonKernel {
   /* Where this is not 0 the kernel is one in single precision: these are its entry points, and those above are 0. */
   const ErgonSingle* single;
 
-  /* Where this is not 0 the Hessian falls apart: parts[q_vectors], the part of each 3-vector of q, counted from 0 in the
-     order of their first vectors, -1 for one that is in no entry. `hessian` then writes the lower triangles of the parts,
-     each packed by rows over its vectors in ascending order, one after the other. */
+  /* Where this is not 0 the Hessian falls apart: parts[q_vectors], the part of each 3-vector of q, numbered from 0 in
+     order of their first vectors, -1 for one that is in no entry. `hessian` then writes the lower triangles of the
+     parts, each packed by rows over its vectors in ascending order, one after the other. */
   const int* parts;
 
   /* 1: a density in principal stretches. In conditions, value, gradient and hessian q is then s[q_vectors][lanes], the
