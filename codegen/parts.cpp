@@ -23,7 +23,7 @@ std::vector<Entry> hessian_entries(const ErgonKernel& kernel) {
 }
 
 void find_parts(Module& m) {
-  if (m.constant_hessian || m.zero_hessian || !m.principal.empty() || m.changed >= 0) return;
+  if (m.stretches || m.constant_hessian || m.zero_hessian || !m.principal.empty() || m.changed >= 0) return;
   const std::vector<Entry> all = hessian_entries(m.q_vectors, {});
   std::vector<int> joined(static_cast<size_t>(m.q_vectors));  // to the first vector of the same part
   std::iota(joined.begin(), joined.end(), 0);
