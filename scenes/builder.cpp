@@ -106,6 +106,7 @@ double tolerance(const Scene& scene) {
 StepOptions step_options(const Scene& scene) {
   StepOptions out;
   out.dt = scene.time.dt;
+  out.integrator = scene.time.integrator;
   out.tolerance = tolerance(scene);
   out.max_iterations = scene.solver.max_iterations;
   out.friction_lag_iterations = scene.solver.friction_iterations;

@@ -191,6 +191,7 @@ struct SceneGround : Located {
 };
 
 struct TimeSettings : Located {
+  std::string integrator = "implicit_euler";
   double dt = 0;              // s
   std::optional<double> end;  // s; exactly one of `end` and `steps`
   std::optional<int> steps;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "runtime/mesh/quadrature.h"
+#include "runtime/solver/integrator.h"
 #include "scenes/contact_keys.h"
 #include "scenes/shape_keys.h"
 
@@ -19,6 +20,11 @@ Section<TimeSettings> time_section() {
       number_key("dt", &T::dt, "s", positive, Need::required, "length of a time step"),
       number_key("end", &T::end, "s", positive, Need::optional, "simulated time", "give `end` or `steps`"),
       integer_key("steps", &T::steps, from_1, Need::optional, "number of time steps", "give `end` or `steps`"),
+      choice_key(
+          "integrator", &T::integrator, integrator_names(),
+          "of first order implicit_euler, which damps; of second bdf2 (one solve per step), sdirk2 and tr_bdf2 (two), "
+          "which damp little, newmark, generalised_alpha and midpoint, which damp next to nothing; midpoint and "
+          "generalised_alpha go on beyond the state they solve for, which contact may forbid: the step then fails"),
   };
   out.check = [](const std::string&, const T& time) {
     if (time.end && time.steps)

@@ -38,6 +38,14 @@ void set_vector_lags(Potential& potential, const std::string& ending, const Eige
   }
 }
 
+bool has_vector_lag(const Potential& potential, const std::string& ending) {
+  if (potential.kernel().density || !potential.kernel().point_names) return false;
+  for (int point = 0; point < potential.points_per_stencil(); ++point) {
+    if (has_lag(potential.kernel(), potential.kernel().point_names[point] + ending)) return true;
+  }
+  return false;
+}
+
 void add(NewtonSeconds& sum, const NewtonSeconds& part) {
   sum.evaluate += part.evaluate;
   sum.factor += part.factor;
@@ -58,78 +66,178 @@ TimeStepper::TimeStepper(System& system, Eigen::VectorXd mass, Contact* contact,
   };
   positive("dt", options_.dt, "s");
   positive("tolerance", options_.tolerance, "m/s");
+  integrator_named(options_.integrator);  // throws
   if (options_.max_iterations < 1) throw InputError("max_iterations must be at least 1");
   if (options_.friction_lag_iterations < 1) throw InputError("friction_lag_iterations must be at least 1");
 }
 
 StepRecord TimeStepper::step(State& state) {
   StepRecord record;
-  Eigen::Matrix3Xd x = state.x;
   NewtonResult result;
   {
     const Stopwatch watch(record.seconds.total);
     record.dt = options_.dt;
 
-    const Eigen::Matrix3Xd xhat = predict(state);
-    set_lags(state.x, xhat);
-    if (contact_) begin_contact(state, record);
-    result = solve(state, x, record);
-    record.accepted = result.converged || (options_.accept_unconverged && result.iterations > 0);
-    if (record.accepted) advance(state, x);
+    const Integrator integrator = integrator_for(state);
+    std::vector<Moment> moments = known_moments(state, integrator);
+    for (const Stage& stage : integrator.stages) {
+      Eigen::Matrix3Xd x = moments.back().x;
+      result = solve_stage(stage_of(state, stage, moments), state.v, x, record);
+      record.accepted = result.converged || (options_.accept_unconverged && result.iterations > 0);
+      if (!record.accepted) break;
+      moments.push_back(moment_of(state, stage, moments, x));
+    }
+    record.accepted = record.accepted && finish(integrator, moments, result);
+    if (record.accepted) advance(state, moments.back());
   }
   report(state, result, record);
   return record;
 }
 
-// Where the vertices go without forces.
-Eigen::Matrix3Xd TimeStepper::predict(const State& state) const {
-  Eigen::Matrix3Xd xhat = state.x + options_.dt * state.v;
-  for (int v = 0; v < system_->vertices(); ++v) {
-    if (!system_->moves(v)) xhat.col(v) = state.x.col(v);
-  }
-  return xhat;
+// A two-step method knows no last step at the first, and none that was made before a jump of the state.
+Integrator TimeStepper::integrator_for(const State& state) const {
+  const bool first = state.last_dt == 0;
+  const Integrator integrator = integrator_named(options_.integrator, first ? 1 : options_.dt / state.last_dt);
+  return integrator.two_step && first ? integrator_named("sdirk2") : integrator;
 }
 
-void TimeStepper::set_lags(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& xhat) {
+std::vector<Moment> TimeStepper::known_moments(const State& state, const Integrator& integrator) {
+  std::vector<Moment> moments(2);
+  if (integrator.two_step) moments[0] = {state.last_x, state.last_v, {}};
+  moments[1] = {state.x, state.v, state.a};
+  if (integrator.needs_acceleration && state.a.cols() == 0) moments[1].a = free_acceleration(state);
+  return moments;
+}
+
+// What the forces at the start give the vertices.
+Eigen::Matrix3Xd TimeStepper::free_acceleration(const State& state) {
+  prepare_at(state);
+  std::vector<int> stored;
+  for (int i = 0; i < system_->potential_count(); ++i) {
+    if (!has_lag(system_->potential(i).kernel(), "dt")) stored.push_back(i);
+  }
+  Eigen::Matrix3Xd gradient;
+  system_->gradient_of(stored, state.x, gradient);
+  for (int v = 0; v < system_->vertices(); ++v) {
+    if (system_->block_of(v) < 0)
+      gradient.col(v).setZero();
+    else
+      gradient.col(v) /= -mass_[v];
+  }
+  system_->carriers().place(gradient);
+  return gradient;
+}
+
+TimeStepper::Solve TimeStepper::stage_of(const State& state, const Stage& stage,
+                                         const std::vector<Moment>& moments) const {
+  Solve out;
+  const double dt = options_.dt;
+  out.dt = std::sqrt(stage.inertia) * dt;
+  out.lag_dt = stage.inertia / stage.rate * dt;
+  out.end = state.time + stage.time * dt;
+  out.xhat = position(stage.xhat, moments, dt);
+  out.xlag = position(xlag_of(stage), moments, dt);
+  Eigen::Matrix3Xd goal = state.x;
+  script_.place(out.end, goal);
+  const double part = out.lag_dt / (stage.time * dt);
+  for (int v = 0; v < system_->vertices(); ++v) {
+    if (system_->moves(v)) continue;
+    out.xhat.col(v) = state.x.col(v);
+    out.xlag.col(v) = goal.col(v) - part * (goal.col(v) - state.x.col(v));
+  }
+  return out;
+}
+
+// The end of a stage that was solved. Scripted vertices have the mean velocity since the start of the step.
+Moment TimeStepper::moment_of(const State& state, const Stage& stage, const std::vector<Moment>& moments,
+                              const Eigen::Matrix3Xd& x) const {
+  const double dt = options_.dt;
+  Moment out;
+  out.x = x;
+  out.a = (x - position(stage.xhat, moments, dt)) / (stage.inertia * dt * dt);
+  out.v = (x - position(xlag_of(stage), moments, dt)) / (stage.inertia / stage.rate * dt);
+  for (int v = 0; v < system_->vertices(); ++v) {
+    if (system_->moves(v)) continue;
+    out.v.col(v) = (x.col(v) - state.x.col(v)) / (stage.time * dt);
+    out.a.col(v).setZero();
+  }
+  return out;
+}
+
+NewtonResult TimeStepper::solve_stage(const Solve& stage, const Eigen::Matrix3Xd& v, Eigen::Matrix3Xd& x,
+                                      StepRecord& record) {
+  set_lags(stage);
+  if (contact_) begin_contact(stage, x, v, record);
+  return solve(stage, x, record);
+}
+
+// The last combination of an integrator that has one, if contact and the potentials' domains let it be.
+bool TimeStepper::finish(const Integrator& integrator, std::vector<Moment>& moments, NewtonResult& result) {
+  if (integrator.end_x.empty()) return true;
+  const double dt = options_.dt;
+  Moment end{position(integrator.end_x, moments, dt), velocity(integrator.end_v, moments, dt),
+             acceleration(integrator.end_a, moments)};
+  for (int v = 0; v < system_->vertices(); ++v) {
+    if (!system_->moves(v)) end.v.col(v) = (end.x.col(v) - moments[1].x.col(v)) / dt;
+  }
+  const Eigen::Matrix3Xd way = end.x - moments.back().x;
+  const bool blocked = contact_ && contact_->largest_step(moments.back().x, way) < 1;
+  if (contact_) contact_->set_active(blocked ? moments.back().x : end.x);
+  if (!blocked) result.evaluation = system_->value(end.x);
+  if (blocked || !(result.evaluation.require > 0)) {
+    result.converged = false;
+    result.reason = fmt::format(
+        "the integrator {} ends its step beyond its last stage, where {}; take one that does not, as sdirk2 or bdf2",
+        options_.integrator, blocked ? "surfaces collide" : "the state is outside the domain of an energy");
+    return false;
+  }
+  moments.push_back(std::move(end));
+  return true;
+}
+
+void TimeStepper::set_lags(const Solve& stage) {
   lagged_dt_.resize(static_cast<size_t>(system_->potential_count()), 0);
   for (int i = 0; i < system_->potential_count(); ++i) {
     Potential& potential = system_->potential(i);
     if (contact_ && contact_->owns(i)) continue;
+    const double dt = has_vector_lag(potential, "hat") ? stage.dt : stage.lag_dt;
     double& lagged_dt = lagged_dt_[static_cast<size_t>(i)];
-    if (lagged_dt != options_.dt && has_lag(potential.kernel(), "dt")) potential.set_lag("dt", {options_.dt});
-    lagged_dt = options_.dt;
+    if (lagged_dt != dt && has_lag(potential.kernel(), "dt")) potential.set_lag("dt", {dt});
+    lagged_dt = dt;
     if (potential.kernel().density || !potential.kernel().point_names) continue;
-    set_vector_lags(potential, "hat", xhat);
-    set_vector_lags(potential, "lag", x);
+    set_vector_lags(potential, "hat", stage.xhat);
+    set_vector_lags(potential, "lag", stage.xlag);
   }
 }
 
-void TimeStepper::begin_contact(const State& state, StepRecord& record) {
+void TimeStepper::begin_contact(const Solve& stage, const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& v,
+                                StepRecord& record) {
   const Stopwatch watch(record.seconds.contact);
-  contact_->begin_step(state.x, state.v, options_.dt);
-  contact_->lag_friction(state.x, state.x, options_.dt);
+  contact_->begin_step(x, v, stage.lag_dt);
+  contact_->lag_friction(x, stage.xlag, stage.lag_dt);
 }
 
 // Newton, repeated with new normal forces of friction until these have settled.
-NewtonResult TimeStepper::solve(const State& state, Eigen::Matrix3Xd& x, StepRecord& record) {
+NewtonResult TimeStepper::solve(const Solve& stage, Eigen::Matrix3Xd& x, StepRecord& record) {
   NewtonOptions newton;
-  newton.dt = options_.dt;
+  newton.dt = stage.dt;
   newton.tolerance = options_.tolerance;
   newton.max_iterations = options_.max_iterations;
   newton.projection = options_.projection;
   newton.on_demand = options_.project_on_demand;
-  newton.curvature = resisting_mass_ / (options_.dt * options_.dt);
+  newton.curvature = resisting_mass_ / (stage.dt * stage.dt);
   if (!script_.empty()) {
-    goal_ = state.x;
-    script_.place(state.time + options_.dt, goal_);
+    goal_ = x;
+    script_.place(stage.end, goal_);
     newton.prescribed = {&script_.vertices(), &goal_};
   }
   const bool friction = contact_ && contact_->has_friction();
 
   NewtonResult result;
+  int solves = 0;
   while (true) {
     result = newton_.minimise(*system_, x, newton, contact_);
-    ++record.friction_iterations;
+    ++solves;
     record.newton_iterations += result.iterations;
     record.follow_iterations += result.follow_iterations;
     record.factorisations += result.factorisations;
@@ -141,11 +249,11 @@ NewtonResult TimeStepper::solve(const State& state, Eigen::Matrix3Xd& x, StepRec
     if (!friction || !result.converged) break;
 
     const Stopwatch watch(record.seconds.contact);
-    record.friction_change = contact_->lag_friction(x, state.x, options_.dt).fraction();
+    record.friction_change = contact_->lag_friction(x, stage.xlag, stage.lag_dt).fraction();
     if (record.friction_change <= options_.friction_tolerance) break;
-    if (record.friction_iterations >= options_.friction_lag_iterations) break;
+    if (solves >= options_.friction_lag_iterations) break;
   }
-  if (!friction) record.friction_iterations = 0;
+  if (friction) record.friction_iterations += solves;
   return result;
 }
 
@@ -164,9 +272,13 @@ ContactForces TimeStepper::forces(const Eigen::Matrix3Xd& x) {
   return forces;
 }
 
-void TimeStepper::advance(State& state, const Eigen::Matrix3Xd& x) const {
-  state.v = (x - state.x) / options_.dt;
-  state.x = x;
+void TimeStepper::advance(State& state, const Moment& end) const {
+  state.last_x = std::move(state.x);
+  state.last_v = std::move(state.v);
+  state.last_dt = options_.dt;
+  state.x = end.x;
+  state.v = end.v;
+  state.a = end.a;
   system_->carriers().place(state.x);  // free of the rounding that the iterations added up
   state.step += 1;
   state.time += options_.dt;
@@ -191,13 +303,17 @@ void TimeStepper::report(const State& state, const NewtonResult& result, StepRec
   }
 }
 
+// Lags and contact of a state that nothing was stepped to.
+void TimeStepper::prepare_at(const State& state) {
+  set_lags({state.x, options_.dt, state.x, options_.dt, state.time});
+  if (!contact_) return;
+  contact_->begin_step(state.x, state.v, options_.dt);
+  contact_->lag_friction(state.x, state.x, options_.dt);
+  contact_->set_active(state.x);
+}
+
 Energies TimeStepper::energies(const State& state) {
-  set_lags(state.x, predict(state));
-  if (contact_) {
-    contact_->begin_step(state.x, state.v, options_.dt);
-    contact_->lag_friction(state.x, state.x, options_.dt);
-    contact_->set_active(state.x);
-  }
+  prepare_at(state);
   return energies_of(system_->value(state.x), state.v);
 }
 

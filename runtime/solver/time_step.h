@@ -1,12 +1,14 @@
 #pragma once
-// One step of a simulation: implicit Euler as the minimum of an incremental potential, inertia + all other potentials
-// of the system. It establishes that a step either ends in a converged state free of penetration, or leaves the state
-// as it was and says why. Source: Gast et al. 2015, Optimization Integrator for Large Time Steps, TVCG 21(10); Li et
-// al. 2020, Incremental Potential Contact, TOG 39(4).
+// One step of a simulation: each stage of the integrator (implicit Euler has one) is the minimum of an incremental
+// potential, inertia + all other potentials of the system. It establishes that a step either ends in a converged state
+// free of penetration, or leaves the state as it was and says why. Source: Gast et al. 2015, Optimization Integrator
+// for Large Time Steps, TVCG 21(10); Li et al. 2020, Incremental Potential Contact, TOG 39(4).
 //
-// Lags are set by name in every potential that has them: `dt` (s) and, for each point of a stencil, its dof's name with
-// `hat` (xhat = x + dt*v) or `lag` (xlag = x at the start of the step) added. A potential with the lag dt is a term of
-// the incremental potential and not stored energy.
+// Lags are set by name in every potential that has them. For each point of a stencil, its dof's name with `hat` added:
+// where inertia pulls it to, xhat = x + dt*v for implicit Euler; beside it, `dt` is the time (s) such that
+// mass/(2*dt^2)*|x - xhat|^2 is the stage's inertia. With `lag` added: the position from which (x - xlag)/dt is the
+// velocity at the end of the stage, with the `dt` of potentials without `hat`; for implicit Euler both are those of the
+// step. A potential with the lag dt is a term of the incremental potential and not stored energy.
 
 #include <Eigen/Core>
 #include <limits>
@@ -17,6 +19,7 @@
 
 #include "runtime/contact/contact.h"
 #include "runtime/script.h"
+#include "runtime/solver/integrator.h"
 #include "runtime/solver/newton.h"
 #include "runtime/system.h"
 
@@ -25,12 +28,17 @@ namespace ergon {
 struct State {
   Eigen::Matrix3Xd x;  // m, 3 x vertices
   Eigen::Matrix3Xd v;  // m/s
+  Eigen::Matrix3Xd a;  // m/s^2; empty where no step has ended yet
+  // Of the start of the last step, for two-step integrators; empty before the first one.
+  Eigen::Matrix3Xd last_x, last_v;
+  double last_dt = 0;  // s
   double time = 0;     // s
   long step = 0;
 };
 
 struct StepOptions {
-  double dt = 0.01;                 // s
+  double dt = 0.01;  // s
+  std::string integrator = "implicit_euler";
   double tolerance = 1e-4;          // m/s, of a Newton step over dt
   int max_iterations = 200;         // of each Newton solve
   int friction_lag_iterations = 2;  // solves per step, each with the normal forces of the one before
@@ -98,12 +106,28 @@ class TimeStepper {
   StepOptions& options() { return options_; }
 
  private:
-  Eigen::Matrix3Xd predict(const State& state) const;
-  void set_lags(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& xhat);
-  void begin_contact(const State& state, StepRecord& record);
-  NewtonResult solve(const State& state, Eigen::Matrix3Xd& x, StepRecord& record);
+  // One stage as the solver sees it.
+  struct Solve {
+    Eigen::Matrix3Xd xhat;  // m, of inertia
+    double dt = 0;          // s, of inertia
+    Eigen::Matrix3Xd xlag;  // m, from which motion is counted
+    double lag_dt = 0;      // s, that it takes
+    double end = 0;         // s, time at its end
+  };
+  Integrator integrator_for(const State& state) const;
+  std::vector<Moment> known_moments(const State& state, const Integrator& integrator);
+  Solve stage_of(const State& state, const Stage& stage, const std::vector<Moment>& moments) const;
+  Moment moment_of(const State& state, const Stage& stage, const std::vector<Moment>& moments,
+                   const Eigen::Matrix3Xd& x) const;
+  NewtonResult solve_stage(const Solve& stage, const Eigen::Matrix3Xd& v, Eigen::Matrix3Xd& x, StepRecord& record);
+  bool finish(const Integrator& integrator, std::vector<Moment>& moments, NewtonResult& result);
+  void prepare_at(const State& state);
+  Eigen::Matrix3Xd free_acceleration(const State& state);
+  void set_lags(const Solve& stage);
+  void begin_contact(const Solve& stage, const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& v, StepRecord& record);
+  NewtonResult solve(const Solve& stage, Eigen::Matrix3Xd& x, StepRecord& record);
   ContactForces forces(const Eigen::Matrix3Xd& x);
-  void advance(State& state, const Eigen::Matrix3Xd& x) const;
+  void advance(State& state, const Moment& end) const;
   void report(const State& state, const NewtonResult& result, StepRecord& record);
   Energies energies_of(const Evaluation& evaluation, const Eigen::Matrix3Xd& v) const;
   std::vector<std::string> skipped_parts() const;
