@@ -73,7 +73,7 @@ std::vector<StencilPath> stencil_paths(const std::string& stencil) {
              }}};
   if (stencil == "hinge") return {turned({-0.5 * x, 0.5 * x, y}, -y, -z, 2.5)};
   if (stencil == "corner") return {turned({-x, o}, x, y, 2.5)};
-  if (stencil == "triangle") return {turned({-x, o}, x, y, 2.5), scaled({o, x, y})};
+  if (stencil == "triangle") return {turned({-x, o}, x, y, 2.5), scaled({o, x, y}), apart({o, x, y}, 3)};
   if (stencil == "tetrahedron") return {scaled({o, x, y, z})};
   if (stencil == "point_point") return {apart({o, o}, 1)};
   if (stencil == "point_edge") return {apart({o, -x / 2, x / 2}, 1)};

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "runtime/lanes/lanes.h"
+#include "symbolic/stretches.h"
 #include "tests/symbolic/energy_files.h"
 #include "tests/tools/command.h"
 #include "tools/accuracy.h"
@@ -34,8 +35,10 @@ TEST_P(EveryEnergyIsAccurate, WithinItsCondition) {
       for (int entry = 0; entry < 3; ++entry)
         EXPECT_LE(at.excess[entry], kBound)
             << energy.name << " " << case_name << " strain " << at.strain << " entry " << entry;
-      // What is stress-free at rest is well conditioned in its displacements: then few ulps are few in the result.
-      if (at.strain <= 0.1 && energy.kind == Energy::Kind::density) {
+      // What is stress-free at rest is well conditioned in its displacements: then few ulps are few in the result. Laws
+      // that are part of a sum have stress there; those in the stretches of membranes and lines are given F itself.
+      const bool given_displacements = !uses_stretches(energy) || energy.geometry == "solid";
+      if (at.strain <= 0.1 && energy.kind == Energy::Kind::density && energy.part_of.empty() && given_displacements) {
         EXPECT_LE(at.emitted[0].median, 16) << energy.name << " strain " << at.strain;
         EXPECT_LE(at.emitted[1].median, 16) << energy.name << " strain " << at.strain;
       }
