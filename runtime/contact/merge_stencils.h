@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <array>
-#include <compare>
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 namespace ergon {
@@ -39,7 +39,7 @@ struct MergeRoom {
   struct Weighted {
     std::uint64_t key;
     float weight;
-    auto operator<=>(const Weighted&) const = default;
+    bool operator<(const Weighted& other) const { return std::tie(key, weight) < std::tie(other.key, other.weight); }
   };
   std::vector<Weighted> keys;
 };

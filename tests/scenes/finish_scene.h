@@ -15,10 +15,10 @@ struct FinishedScene {
   State end;
 };
 
-// `steps`: 0 for all; dt: 0 for that of the scene.
-inline FinishedScene finish(const std::string& name, long steps = 0, double dt = 0) {
-  Scene scene = read_scene(ERGON_SOURCE_DIR "/scenes/" + name);
-  if (dt > 0) scene.time.dt = dt;
+inline Scene shipped_scene(const std::string& name) { return read_scene(ERGON_SOURCE_DIR "/scenes/" + name); }
+
+// `steps`: 0 for all.
+inline FinishedScene finish(const Scene& scene, long steps = 0) {
   FinishedScene out{build_scene(scene, shipped_energies(), real_kernels), {}, {}};
   if (steps > 0) out.built.steps = std::min(steps, out.built.steps);
   RunOptions options;
@@ -26,6 +26,13 @@ inline FinishedScene finish(const std::string& name, long steps = 0, double dt =
   options.verify = true;
   out.summary = run_scene(scene, out.built, options);
   return out;
+}
+
+// dt: 0 for that of the scene.
+inline FinishedScene finish(const std::string& name, long steps = 0, double dt = 0) {
+  Scene scene = shipped_scene(name);
+  if (dt > 0) scene.time.dt = dt;
+  return finish(scene, steps);
 }
 
 inline double mean(const FinishedScene& scene, const Eigen::Matrix3Xd& x, size_t body, int axis) {

@@ -26,6 +26,21 @@ TEST(SlowScenes, a_block_slides_down_a_slope_as_coulomb_says) {
   EXPECT_NEAR(mean(slope, slope.end.x, 0, 0) - mean(slope, slope.built.start.x, 0, 0), 0.2753, 0.01);
 }
 
+// The tangent of the angle is 0.5: there static friction holds the block where it is at rest at the start, but for what
+// it creeps below epsv.
+TEST(Scenes, a_block_stays_on_a_slope_up_to_the_angle_of_friction) {
+  Scene scene = shipped_scene("slope_stays.toml");
+  const FinishedScene stays = finish(scene);
+  ASSERT_EQ(stays.summary.failure, "");
+  EXPECT_LT(
+      std::abs(stays.end.x(0, stays.built.probes[0].vertex) - stays.built.start.x(0, stays.built.probes[0].vertex)),
+      1e-5 * 2.5);
+  scene.contact->mu = 0.49;
+  const FinishedScene slides = finish(scene);
+  ASSERT_EQ(slides.summary.failure, "");
+  EXPECT_NEAR(mean(slides, slides.end.x, 0, 0) - mean(slides, slides.built.start.x, 0, 0), 0.2753, 0.0005);
+}
+
 TEST(SlowScenes, a_ball_at_1000_metres_per_second_does_not_pass_a_plate) {
   const FinishedScene impact = finish("fast_impact.toml");
   ASSERT_EQ(impact.summary.failure, "");
