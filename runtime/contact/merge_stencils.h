@@ -23,7 +23,9 @@ struct LoweredStencil {
   std::uint32_t offset;  // its number
   std::uint64_t key;
   float weight;
-  auto operator<=>(const LoweredStencil&) const = default;
+  bool operator<(const LoweredStencil& other) const {
+    return std::tie(bin, offset, key, weight) < std::tie(other.bin, other.offset, other.key, other.weight);
+  }
   bool is_same(const LoweredStencil& other) const {
     return bin == other.bin && offset == other.offset && key == other.key;
   }
