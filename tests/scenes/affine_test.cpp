@@ -5,31 +5,10 @@
 #include <cmath>
 
 #include "scenes/frames.h"
-#include "scenes/run.h"
-#include "tests/scenes/real_kernels.h"
+#include "tests/scenes/finish_scene.h"
 
 namespace ergon {
 namespace {
-
-struct Outcome {
-  BuiltScene built;
-  RunSummary summary;
-  State end;
-};
-
-Outcome run_built(const Scene& scene, BuiltScene built) {
-  Outcome out{std::move(built), {}, {}};
-  RunOptions options;
-  options.last_state = &out.end;
-  options.verify = true;
-  out.summary = run_scene(scene, out.built, options);
-  return out;
-}
-
-Outcome run_text(const std::string& text) {
-  const Scene scene = read_scene_text(text, "a.toml");
-  return run_built(scene, build_scene(scene, shipped_energies(), real_kernels));
-}
 
 std::string box(const std::string& name, const std::string& keys) {
   return "[[object]]\nname = \"" + name + "\"\nkinematics = \"affine\"\n" +
@@ -47,10 +26,10 @@ Eigen::Vector3d mean(const Eigen::Matrix3Xd& x, const Body& body) {
 TEST(Affine, ABodyFallsAsImplicitEulerSays) {
   const double g = 9.81, dt = 0.01;
   const int n = 20;
-  const Outcome fall =
-      run_text(settings("[0, 0, -9.81]", dt, n) +
-               "[[object]]\nname = \"ball\"\nkinematics = \"affine\"\nsphere = { radius = 0.1, cuts = 3 }\n"
-               "density = 500\nvelocity = [1, 0, 2]\n");
+  const FinishedScene fall =
+      finish_text(settings("[0, 0, -9.81]", dt, n) +
+                  "[[object]]\nname = \"ball\"\nkinematics = \"affine\"\nsphere = { radius = 0.1, cuts = 3 }\n"
+                  "density = 500\nvelocity = [1, 0, 2]\n");
   ASSERT_EQ(fall.summary.failure, "");
   const Eigen::Vector3d moved(n * dt, 0, 2 * n * dt - g * dt * dt * n * (n + 1) / 2);
   for (int v = 0; v < fall.built.bodies[0].ordered.vertices(); ++v)
@@ -86,7 +65,7 @@ TEST(Affine, AFreeBodyTurnsAsImplicitEulerSays) {
       built.start.v.col(v) = (arm - back * arm) / dt;
     }
     const Eigen::Vector3d first = built.start.x.col(0) - center;
-    const Outcome turn = run_built(scene, std::move(built));
+    const FinishedScene turn = finish(scene, std::move(built));
     ASSERT_EQ(turn.summary.failure, "");
     double turned = 0;
     for (int step = 0; step < 10; ++step) {
@@ -101,8 +80,9 @@ TEST(Affine, AFreeBodyTurnsAsImplicitEulerSays) {
 }
 
 TEST(Affine, BodiesThatMeetKeepTheirMomentumAndDoNotPassThrough) {
-  const Outcome run = run_text(settings("[0, 0, 0]", 0.01, 30) + "[contact]\n" + box("left", "velocity = [1, 0, 0]\n") +
-                               box("right", "translate = [0.15, 0.03, 0.02]\nrotate = [0.1, 0.2, 0.3]\n"));
+  const FinishedScene run =
+      finish_text(settings("[0, 0, 0]", 0.01, 30) + "[contact]\n" + box("left", "velocity = [1, 0, 0]\n") +
+                  box("right", "translate = [0.15, 0.03, 0.02]\nrotate = [0.1, 0.2, 0.3]\n"));
   ASSERT_EQ(run.summary.failure, "");
   EXPECT_GT(run.summary.smallest_gap, 0);
   EXPECT_LT(run.summary.smallest_gap, 1e-3);  // they met
@@ -114,8 +94,8 @@ TEST(Affine, BodiesThatMeetKeepTheirMomentumAndDoNotPassThrough) {
 }
 
 TEST(Affine, ABoxRestsWithItsWeightOnTheGround) {
-  const Outcome run = run_text(settings("[0, 0, -9.81]", 0.01, 60) + "[[ground]]\nmu = 0.3\n" +
-                               box("box", "translate = [0, 0, 0.02]\nrotate = [0.1, 0.05, 0]\n"));
+  const FinishedScene run = finish_text(settings("[0, 0, -9.81]", 0.01, 60) + "[[ground]]\nmu = 0.3\n" +
+                                        box("box", "translate = [0, 0, 0.02]\nrotate = [0.1, 0.05, 0]\n"));
   ASSERT_EQ(run.summary.failure, "");
   EXPECT_LT(run.summary.largest_speed, 1e-2);
   double force = 0;
@@ -127,15 +107,15 @@ TEST(Affine, ABoxRestsWithItsWeightOnTheGround) {
 // It starts to tip forward, and after that slides with g (sin - mu cos).
 TEST(Affine, ABoxOnASlopeStaysOrSlidesAsCoulombSays) {
   const auto slide = [](double mu, int steps) {
-    return run_text(settings("[4.38717, 0, -8.77433]", 0.01, steps) +
-                    "[solver]\nfriction_iterations = 10\nfriction_tolerance = 1e-3\n[contact]\nmu = " +
-                    std::to_string(mu) + "\n" + box("box", "rotate = [0, 0, 0.2]\ntranslate = [0, 0, 0.000353]\n") +
-                    "[[obstacle]]\nname = \"slope\"\nbox = { size = [2, 1, 0.1], cells = [4, 2, 1] }\n"
-                    "translate = [-0.5, -0.4, -0.1]\n");
+    return finish_text(settings("[4.38717, 0, -8.77433]", 0.01, steps) +
+                       "[solver]\nfriction_iterations = 10\nfriction_tolerance = 1e-3\n[contact]\nmu = " +
+                       std::to_string(mu) + "\n" + box("box", "rotate = [0, 0, 0.2]\ntranslate = [0, 0, 0.000353]\n") +
+                       "[[obstacle]]\nname = \"slope\"\nbox = { size = [2, 1, 0.1], cells = [4, 2, 1] }\n"
+                       "translate = [-0.5, -0.4, -0.1]\n");
   };
-  const auto speed = [](const Outcome& run) { return mean(run.end.v, run.built.bodies[0])[0]; };
-  const Outcome stays = slide(0.6, 50), early = slide(0.3, 20), late = slide(0.3, 50);
-  for (const Outcome* run : {&stays, &early, &late}) ASSERT_EQ(run->summary.failure, "");
+  const auto speed = [](const FinishedScene& run) { return mean(run.end.v, run.built.bodies[0])[0]; };
+  const FinishedScene stays = slide(0.6, 50), early = slide(0.3, 20), late = slide(0.3, 50);
+  for (const FinishedScene* run : {&stays, &early, &late}) ASSERT_EQ(run->summary.failure, "");
   EXPECT_LT((mean(stays.end.x, stays.built.bodies[0]) - mean(stays.built.start.x, stays.built.bodies[0])).norm(), 1e-3);
   EXPECT_LT(std::abs(speed(stays)), 1e-3);  // epsv
   const double expected = 9.81 * (0.4472136 - 0.3 * 0.8944272);
@@ -155,7 +135,7 @@ TEST(Affine, BodiesThatAreHeldHaveNoDegreesOfFreedom) {
 }
 
 TEST(Affine, AScriptedBodyPushesAffineAndSoftOnes) {
-  const Outcome run = run_text(
+  const FinishedScene run = finish_text(
       settings("[0, 0, -9.81]", 0.01, 40) + "[contact]\n[[ground]]\n" +
       box("pusher", "translate = [0, 0, 0.01]\nscripted = [{ key = [{ time = 0.4, translate = [0.2, 0, 0] }] }]\n") +
       box("pushed", "translate = [0.11, 0, 0.001]\n") +

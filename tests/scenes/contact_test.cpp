@@ -6,28 +6,12 @@
 
 #include "scenes/run.h"
 #include "scenes/surface_check.h"
-#include "tests/scenes/real_kernels.h"
+#include "tests/scenes/finish_scene.h"
 
 namespace ergon {
 namespace {
 
 using testing::HasSubstr;
-
-struct Outcome {
-  BuiltScene built;
-  RunSummary summary;
-  State end;
-};
-
-Outcome run_text(const std::string& text) {
-  const Scene scene = read_scene_text(text, "a.toml");
-  Outcome out{build_scene(scene, shipped_energies(), real_kernels), {}, {}};
-  RunOptions options;
-  options.last_state = &out.end;
-  options.verify = true;
-  out.summary = run_scene(scene, out.built, options);
-  return out;
-}
 
 std::string block(const std::string& name, const std::string& keys) {
   return "[[object]]\nname = \"" + name + "\"\nbox = { size = [0.1, 0.1, 0.1], cells = [2, 2, 2] }\ndensity = 1000\n" +
@@ -44,8 +28,8 @@ Eigen::Vector3d mean(const Eigen::Matrix3Xd& x, int first, int count) {
 }
 
 TEST(Contact, BlocksThatMeetKeepTheirMomentumAndDoNotPassThrough) {
-  const Outcome run = run_text(settings("[0, 0, 0]", 0.01, 30) + block("left", "velocity = [1, 0, 0]\n") +
-                               block("right", "translate = [0.15, 0.03, 0.02]\nrotate = [0.1, 0.2, 0.3]\n"));
+  const FinishedScene run = finish_text(settings("[0, 0, 0]", 0.01, 30) + block("left", "velocity = [1, 0, 0]\n") +
+                                        block("right", "translate = [0.15, 0.03, 0.02]\nrotate = [0.1, 0.2, 0.3]\n"));
   EXPECT_EQ(run.summary.failure, "");
   EXPECT_EQ(run.summary.unconverged_steps, 0);
   EXPECT_GT(run.summary.smallest_gap, 0);
@@ -60,7 +44,7 @@ TEST(Contact, BlocksThatMeetKeepTheirMomentumAndDoNotPassThrough) {
 }
 
 TEST(Contact, IgnoredPairsPassThrough) {
-  const Outcome run = run_text(
+  const FinishedScene run = finish_text(
       settings("[0, 0, 0]", 0.01, 30, "[[contact.pair]]\nfirst = \"left\"\nsecond = \"right\"\nignore = true\n") +
       block("left", "velocity = [1, 0, 0]\n") + block("right", "translate = [0.15, 0, 0]\n"));
   EXPECT_EQ(run.summary.failure, "");
@@ -80,8 +64,8 @@ TEST(Contact, BlockOnASlopeStaysOrSlidesAsCoulombSays) {
         "[[object]]\nname = \"block\"\nbox = { size = [0.1, 0.1, 0.05], cells = [2, 2, 1] }\nrotate = [0, 0, 0.2]\n"
         "translate = [0, 0, 0.000774]\ndensity = 1000\n[[object.energy]]\nlaw = \"stable_neo_hookean\"\nE = 1e7\n"
         "nu = 0.3\n[solver]\nfriction_iterations = 10\nfriction_tolerance = 1e-3\n";
-    const Outcome run =
-        run_text(settings("[4.38717, 0, -8.77433]", dt, 50, "mu = " + std::to_string(mu) + "\n") + block + slope);
+    const FinishedScene run =
+        finish_text(settings("[4.38717, 0, -8.77433]", dt, 50, "mu = " + std::to_string(mu) + "\n") + block + slope);
     ASSERT_EQ(run.summary.failure, "");
     const double way = (mean(run.end.x, 0, 18) - mean(run.built.start.x, 0, 18))[0];
     const double expected = std::max(0.0, g * (0.4472136 - mu * 0.8944272) / 2 * t * (t + dt));
@@ -118,10 +102,10 @@ TEST(Contact, ForcesOfTheReportAccelerateTheBlock) {
 }
 
 TEST(Contact, ObstacleOnAScriptCarriesWhatLiesOnIt) {
-  const Outcome run =
-      run_text(settings("[0, 0, -9.81]", 0.01, 50, "mu = 0.8\n") + block("block", "translate = [0, 0, 0.0006]\n") +
-               "[[obstacle]]\nname = \"plate\"\nbox = { size = [0.3, 0.3, 0.02], cells = [2, 2, 1] }\n"
-               "translate = [-0.1, -0.1, -0.02]\n[[obstacle.key]]\ntime = 0.5\ntranslate = [0.2, 0, 0.3]\n");
+  const FinishedScene run =
+      finish_text(settings("[0, 0, -9.81]", 0.01, 50, "mu = 0.8\n") + block("block", "translate = [0, 0, 0.0006]\n") +
+                  "[[obstacle]]\nname = \"plate\"\nbox = { size = [0.3, 0.3, 0.02], cells = [2, 2, 1] }\n"
+                  "translate = [-0.1, -0.1, -0.02]\n[[obstacle.key]]\ntime = 0.5\ntranslate = [0.2, 0, 0.3]\n");
   ASSERT_EQ(run.summary.failure, "");
   const Eigen::Vector3d moved = mean(run.end.x, 0, 27) - mean(run.built.start.x, 0, 27);
   EXPECT_NEAR(moved[0], 0.2, 5e-3);
@@ -135,10 +119,10 @@ TEST(Contact, ObstacleOnAScriptCarriesWhatLiesOnIt) {
 }
 
 TEST(Contact, OffsetsKeepSurfacesApart) {
-  const Outcome run =
-      run_text(settings("[0, 0, -9.81]", 0.01, 40) + block("block", "translate = [0, 0, 0.02]\noffset = 0.004\n") +
-               "[[obstacle]]\nname = \"plate\"\nbox = { size = [0.3, 0.3, 0.02], cells = [2, 2, 1] }\n"
-               "translate = [-0.1, -0.1, -0.02]\noffset = 0.001\n");
+  const FinishedScene run =
+      finish_text(settings("[0, 0, -9.81]", 0.01, 40) + block("block", "translate = [0, 0, 0.02]\noffset = 0.004\n") +
+                  "[[obstacle]]\nname = \"plate\"\nbox = { size = [0.3, 0.3, 0.02], cells = [2, 2, 1] }\n"
+                  "translate = [-0.1, -0.1, -0.02]\noffset = 0.001\n");
   ASSERT_EQ(run.summary.failure, "");
   const double lowest = run.end.x.row(2).head(27).minCoeff();
   EXPECT_GT(lowest, 0.005);
@@ -146,14 +130,14 @@ TEST(Contact, OffsetsKeepSurfacesApart) {
 }
 
 TEST(Contact, MatTwistedByItsEndsReachesItsScript) {
-  const Outcome run =
-      run_text(settings("[0, 0, 0]", 0.02, 25) +
-               "[[object]]\nname = \"mat\"\nbox = { size = [0.4, 0.1, 0.02], cells = [8, 2, 1] }\ndensity = 1000\n"
-               "[[object.energy]]\nlaw = \"stable_neo_hookean\"\nE = 1e5\nnu = 0.3\n"
-               "[[object.fixed]]\nmax = [0.001, inf, inf]\n"
-               "[[object.scripted]]\nmin = [0.399, -inf, -inf]\ncenter = [0.4, 0.05, "
-               "0.01]\n[[object.scripted.key]]\ntime = 0.5\n"
-               "rotate = [\"180 deg\", 0, 0]\n");
+  const FinishedScene run =
+      finish_text(settings("[0, 0, 0]", 0.02, 25) +
+                  "[[object]]\nname = \"mat\"\nbox = { size = [0.4, 0.1, 0.02], cells = [8, 2, 1] }\ndensity = 1000\n"
+                  "[[object.energy]]\nlaw = \"stable_neo_hookean\"\nE = 1e5\nnu = 0.3\n"
+                  "[[object.fixed]]\nmax = [0.001, inf, inf]\n"
+                  "[[object.scripted]]\nmin = [0.399, -inf, -inf]\ncenter = [0.4, 0.05, "
+                  "0.01]\n[[object.scripted.key]]\ntime = 0.5\n"
+                  "rotate = [\"180 deg\", 0, 0]\n");
   ASSERT_EQ(run.summary.failure, "");
   for (int v = 0; v < run.end.x.cols(); ++v) {
     const Eigen::Vector3d X = run.built.start.x.col(v);
@@ -164,11 +148,11 @@ TEST(Contact, MatTwistedByItsEndsReachesItsScript) {
 }
 
 TEST(Contact, MotionThatCrushesIsToldWithItsVertexAndKeepsTheState) {
-  const Outcome run =
-      run_text(settings("[0, 0, 0]", 0.01, 10) + "[solver]\nmax_iterations = 40\n" +
-               block("block", "translate = [0, 0, 0.001]\n[[object.fixed]]\nmax = [inf, inf, 0.01]\n") +
-               "[[obstacle]]\nname = \"press\"\nbox = { size = [0.3, 0.3, 0.02], cells = [2, 2, 1] }\n"
-               "translate = [-0.1, -0.1, 0.11]\n[[obstacle.key]]\ntime = 0.1\ntranslate = [0, 0, -0.2]\n");
+  const FinishedScene run =
+      finish_text(settings("[0, 0, 0]", 0.01, 10) + "[solver]\nmax_iterations = 40\n" +
+                  block("block", "translate = [0, 0, 0.001]\n[[object.fixed]]\nmax = [inf, inf, 0.01]\n") +
+                  "[[obstacle]]\nname = \"press\"\nbox = { size = [0.3, 0.3, 0.02], cells = [2, 2, 1] }\n"
+                  "translate = [-0.1, -0.1, 0.11]\n[[obstacle.key]]\ntime = 0.1\ntranslate = [0, 0, -0.2]\n");
   EXPECT_THAT(run.summary.failure, HasSubstr("failed"));
   EXPECT_GT(run.summary.smallest_gap, 0);
   EXPECT_TRUE(find_surface_faults(run.built, run.end.x).none());
@@ -222,8 +206,9 @@ INSTANTIATE_TEST_SUITE_P(laws, ContactBarrier,
                          });
 
 TEST_P(ContactBarrier, KeepsBlocksThatMeetApart) {
-  const Outcome run = run_text(settings("[0, 0, 0]", 0.01, 30, barrier()) + block("left", "velocity = [3, 0, 0]\n") +
-                               block("right", "translate = [0.15, 0.03, 0.02]\nrotate = [0.1, 0.2, 0.3]\n"));
+  const FinishedScene run =
+      finish_text(settings("[0, 0, 0]", 0.01, 30, barrier()) + block("left", "velocity = [3, 0, 0]\n") +
+                  block("right", "translate = [0.15, 0.03, 0.02]\nrotate = [0.1, 0.2, 0.3]\n"));
   EXPECT_EQ(run.summary.failure, "");
   EXPECT_EQ(run.summary.unconverged_steps, 0);
   EXPECT_LT(run.summary.smallest_gap, 1e-3);  // they met
@@ -233,11 +218,11 @@ TEST_P(ContactBarrier, KeepsBlocksThatMeetApart) {
 }
 
 TEST_P(ContactBarrier, HoldsABlockUnderAWeight) {
-  const Outcome run = run_text(settings("[0, 0, -9.81]", 0.02, 30, barrier() + "mu = 0.5\n") +
-                               block("lower", "translate = [0, 0, 0.0008]\n") +
-                               block("upper", "translate = [0.01, 0.02, 0.1016]\nrotate = [0, 0, 0.1]\n") +
-                               "[[obstacle]]\nname = \"plate\"\nbox = { size = [0.3, 0.3, 0.02], cells = [2, 2, 1] }\n"
-                               "translate = [-0.1, -0.1, -0.02]\n");
+  const FinishedScene run = finish_text(
+      settings("[0, 0, -9.81]", 0.02, 30, barrier() + "mu = 0.5\n") + block("lower", "translate = [0, 0, 0.0008]\n") +
+      block("upper", "translate = [0.01, 0.02, 0.1016]\nrotate = [0, 0, 0.1]\n") +
+      "[[obstacle]]\nname = \"plate\"\nbox = { size = [0.3, 0.3, 0.02], cells = [2, 2, 1] }\n"
+      "translate = [-0.1, -0.1, -0.02]\n");
   EXPECT_EQ(run.summary.failure, "");
   EXPECT_EQ(run.summary.unconverged_steps, 0);
   EXPECT_GT(run.summary.smallest_gap, 0);

@@ -1,8 +1,9 @@
 #pragma once
-// Runs a scene that comes with the program, every step of it tested exactly for intersections.
+// Runs a scene, every step of it tested exactly for intersections.
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "scenes/run.h"
 #include "tests/scenes/real_kernels.h"
@@ -18,8 +19,8 @@ struct FinishedScene {
 inline Scene shipped_scene(const std::string& name) { return read_scene(ERGON_SOURCE_DIR "/scenes/" + name); }
 
 // `steps`: 0 for all.
-inline FinishedScene finish(const Scene& scene, long steps = 0) {
-  FinishedScene out{build_scene(scene, shipped_energies(), real_kernels), {}, {}};
+inline FinishedScene finish(const Scene& scene, BuiltScene built, long steps = 0) {
+  FinishedScene out{std::move(built), {}, {}};
   if (steps > 0) out.built.steps = std::min(steps, out.built.steps);
   RunOptions options;
   options.last_state = &out.end;
@@ -27,6 +28,12 @@ inline FinishedScene finish(const Scene& scene, long steps = 0) {
   out.summary = run_scene(scene, out.built, options);
   return out;
 }
+
+inline FinishedScene finish(const Scene& scene, long steps = 0) {
+  return finish(scene, build_scene(scene, shipped_energies(), real_kernels), steps);
+}
+
+inline FinishedScene finish_text(const std::string& text) { return finish(read_scene_text(text, "a.toml")); }
 
 // dt: 0 for that of the scene.
 inline FinishedScene finish(const std::string& name, long steps = 0, double dt = 0) {

@@ -8,7 +8,7 @@
 
 #include "scenes/run.h"
 #include "scenes/surface_check.h"
-#include "tests/scenes/real_kernels.h"
+#include "tests/scenes/finish_scene.h"
 
 namespace ergon {
 namespace {
@@ -112,25 +112,9 @@ TEST(thin_objects, obstacles_may_be_sheets_lines_and_points) {
   EXPECT_EQ(built.bodies[3].ordered.element, Element::point);
 }
 
-struct Outcome {
-  BuiltScene built;
-  RunSummary summary;
-  State end;
-};
-
-Outcome run_text(const std::string& text) {
-  const Scene scene = read_scene_text(text, "a.toml");
-  Outcome out{build_scene(scene, shipped_energies(), real_kernels), {}, {}};
-  RunOptions options;
-  options.last_state = &out.end;
-  options.verify = true;
-  out.summary = run_scene(scene, out.built, options);
-  return out;
-}
-
 // Loose points fall on loose points, on a wire and on a sheet, exactly above them; friction keeps them there.
 TEST(thin_objects, points_fall_on_points_wires_and_sheets) {
-  const Outcome run = run_text(
+  const FinishedScene run = finish_text(
       "[time]\ndt = 0.01\nsteps = 40\n[contact]\ndhat = \"5 mm\"\nmu = 1\n" +
       object("points = [[0, 0, 0.05], [1, 0, 0.05], [2, 0, 0.05]]\nvolume = \"1 cm^3\"", "law = \"drag\", rate = 1") +
       "[[obstacle]]\nname = \"needle\"\npoints = [[0, 0, 0]]\n"
@@ -150,20 +134,21 @@ TEST(thin_objects, objects_may_be_thicker_than_their_edges_are_long) {
       "[[obstacle]]\nname = \"floor\"\nbox = { size = [4, 4, 1], cells = [1, 1, 1] }\nelement = \"tri3\"\n"
       "translate = [-1, -1, -0.1]\n";
   const std::string start = "[time]\ndt = 0.01\nsteps = 30\n[contact]\n";
-  const Outcome rod = run_text(start +
-                               object("curve = { points = [[0, 0, 0], [1, 0, 0]], cells = 50 }\noffset = \"5 cm\"\n"
-                                      "cross_section = \"78 cm^2\"",
-                                      "law = \"rod_stretching\", EA = 1e4 }, { law = \"rod_bending\", EI = 1") +
-                               floor);
+  const FinishedScene rod =
+      finish_text(start +
+                  object("curve = { points = [[0, 0, 0], [1, 0, 0]], cells = 50 }\noffset = \"5 cm\"\n"
+                         "cross_section = \"78 cm^2\"",
+                         "law = \"rod_stretching\", EA = 1e4 }, { law = \"rod_bending\", EI = 1") +
+                  floor);
   ASSERT_EQ(rod.summary.failure, "");
   EXPECT_GT(rod.end.x.row(2).head(51).minCoeff(), -0.05);
   EXPECT_LT(rod.end.x.row(2).head(51).maxCoeff(), -0.049);
-  const Outcome sheet =
-      run_text(start +
-               object("box = { size = [0.3, 0.3, 1], cells = [10, 10, 1] }\nelement = \"tri3\"\nthickness = \"8 cm\"\n"
-                      "offset = \"4 cm\"\n",
-                      "law = \"st_venant_kirchhoff_membrane\", E = 1e5, nu = 0.3 }, { " + hinge) +
-               floor);
+  const FinishedScene sheet = finish_text(
+      start +
+      object("box = { size = [0.3, 0.3, 1], cells = [10, 10, 1] }\nelement = \"tri3\"\nthickness = \"8 cm\"\n"
+             "offset = \"4 cm\"\n",
+             "law = \"st_venant_kirchhoff_membrane\", E = 1e5, nu = 0.3 }, { " + hinge) +
+      floor);
   ASSERT_EQ(sheet.summary.failure, "");
   EXPECT_GT(sheet.end.x.row(2).head(121).minCoeff(), -0.06);
   EXPECT_LT(sheet.end.x.row(2).head(121).maxCoeff(), -0.058);
