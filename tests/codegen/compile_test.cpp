@@ -15,6 +15,7 @@
 #include "codegen/build.h"
 #include "codegen/cache.h"
 #include "codegen/hash.h"
+#include "tests/paths.h"
 
 namespace ergon {
 namespace {
@@ -47,7 +48,7 @@ class CompileTest : public ::testing::Test {
 
   fs::path folder;
   CompileOptions options;
-  Energy energy = read_energy(ERGON_SOURCE_DIR "/energies/rods/spring.energy");
+  Energy energy = read_energy(test::source("/energies/rods/spring.energy"));
 };
 
 TEST_F(CompileTest, SecondTimeComesFromTheCache) {
@@ -168,7 +169,7 @@ TEST_F(CompileTest, FrontierFindsTheFewestVectors) {
 
 TEST_F(CompileTest, StructureOfTheCatalogue) {
   auto structure = [&](const char* file) {
-    return generate(read_energy(std::string(ERGON_SOURCE_DIR "/energies/") + file), options).module;
+    return generate(read_energy(test::source("/energies/") + file), options).module;
   };
   Module inertia = structure("bodies/inertia.energy"), gravity = structure("bodies/gravity.energy"),
          linear = structure("solids/linear_elasticity.energy"), stable = structure("solids/stable_neo_hookean.energy");

@@ -6,6 +6,7 @@
 #include "codegen/parts.h"
 
 #include "runtime/lanes/lanes.h"
+#include "tests/paths.h"
 
 namespace ergon::testing {
 namespace {
@@ -60,7 +61,7 @@ CompiledKernel test_kernel(const Energy& energy, const std::string& case_name, i
   CompileOptions options;
   options.case_name = case_name;
   options.lanes = lanes;
-  options.cache = ERGON_BINARY_DIR "/kernels";
+  options.cache = test::built("/kernels");
   return compile(energy, options);
 }
 

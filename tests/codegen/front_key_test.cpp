@@ -16,6 +16,7 @@
 
 #include "codegen/cache.h"
 #include "codegen/compile.h"
+#include "tests/paths.h"
 
 namespace ergon {
 namespace {
@@ -52,7 +53,7 @@ TEST(FrontKey, SeesAllThatDeterminesTheSource) {
 }
 
 TEST(FrontKey, NamesTheLibrariesThatTheProgramIsMadeOf) {
-  FILE* hashes = popen("cd '" ERGON_BINARY_DIR "' && sha256sum libergon_codegen.a libergon_symbolic.a", "r");
+  FILE* hashes = popen(("cd '" + test::built() + "' && sha256sum libergon_codegen.a libergon_symbolic.a").c_str(), "r");
   ASSERT_NE(hashes, nullptr);
   std::array<char, 512> text{};
   const size_t size = std::fread(text.data(), 1, text.size(), hashes);
@@ -103,7 +104,7 @@ class FoundByNote : public ::testing::Test {
 
   fs::path folder;
   CompileOptions options;
-  Energy energy = read_energy(ERGON_SOURCE_DIR "/energies/rods/spring.energy");
+  Energy energy = read_energy(test::source("/energies/rods/spring.energy"));
 };
 
 TEST_F(FoundByNote, FromTheSecondTimeOn) {

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "codegen/compile.h"
+#include "tests/paths.h"
 #include "tests/symbolic/energy_files.h"
 
 namespace ergon {
@@ -28,7 +29,7 @@ TEST(OperationCounts, ArePinned) {
                       n.hessian, n.principal, n.projected, n.divisions, n.roots, n.calls, n.uniforms, n.elements);
     }
   }
-  const std::string golden = ERGON_SOURCE_DIR "/tests/codegen/operation_counts.golden";
+  const std::string golden = test::source("/tests/codegen/operation_counts.golden");
   if (std::getenv("ERGON_UPDATE_GOLDEN")) std::ofstream(golden) << counted;
   std::ostringstream kept;
   kept << std::ifstream(golden).rdbuf();

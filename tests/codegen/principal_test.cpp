@@ -9,6 +9,7 @@
 
 #include "runtime/aligned.h"
 #include "runtime/lanes/projection_table.h"
+#include "symbolic/isotropy.h"
 #include "tests/codegen/evaluate_kernel.h"
 #include "tests/codegen/states.h"
 #include "tests/symbolic/energy_files.h"
@@ -28,12 +29,13 @@ Energy flat(const std::string& geometry, const std::string& unit, const std::str
                       "flat.energy");
 }
 
-// All densities of the catalogue that have a closed form, and flat ones of different structure.
-std::vector<IsotropicCase> isotropic_densities() {
+// The densities of the catalogue, and flat ones of different structure. Nothing is generated here: every process that
+// runs one of the tests lists them all.
+std::vector<IsotropicCase> densities() {
   std::vector<IsotropicCase> out;
   for (const Energy& energy : test::catalogue()) {
     if (energy.kind != Energy::Kind::density || !energy.cases.empty()) continue;
-    if (!generate(energy, {}).module.principal.empty()) out.push_back({energy.name, energy});
+    out.push_back({energy.name, energy});
   }
   out.push_back({"membrane_st_venant", flat("membrane", "N/m", "k*norm2(F'*F - identity(2))")});
   out.push_back({"membrane_neo_hookean", flat("membrane", "N/m", "k*(tr(F'*F) - 3 + 1/det(F'*F))")});
@@ -47,6 +49,10 @@ class Principal : public ::testing::TestWithParam<IsotropicCase> {};
 
 TEST_P(Principal, ClosedFormIsTheProjectedHessian) {
   const Energy& energy = GetParam().energy;
+  if (generate(energy, {}).module.principal.empty()) {
+    EXPECT_FALSE(is_isotropic(energy, ""));
+    return;
+  }
   const std::vector<State> states = draw_states(energy, "", 11);
   for (const int width : test_widths()) {
     const CompiledKernel compiled = test_kernel(energy, "", width);
@@ -99,7 +105,7 @@ TEST_P(Principal, ClosedFormIsTheProjectedHessian) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Densities, Principal, ::testing::ValuesIn(isotropic_densities()),
+INSTANTIATE_TEST_SUITE_P(Densities, Principal, ::testing::ValuesIn(densities()),
                          [](const auto& info) { return info.param.name; });
 
 TEST(PrincipalPass, LeavesOutWhatNeedsNoProjectionOrIsNotIsotropic) {

@@ -9,6 +9,7 @@
 #include "codegen/interpret.h"
 #include "codegen/lower.h"
 #include "tests/codegen/evaluate_kernel.h"
+#include "tests/paths.h"
 
 namespace ergon::testing {
 namespace {
@@ -143,7 +144,7 @@ TEST(Cancellations, KeepAllDigitsOfSmallArguments) {
 
 // Lanes near rest and far from it in one vector each get their own form.
 TEST(RestForm, MixedLanesAreEachAccurate) {
-  const Energy energy = read_energy(ERGON_SOURCE_DIR "/energies/solids/neo_hookean.energy");
+  const Energy energy = read_energy(test::source("/energies/solids/neo_hookean.energy"));
   std::vector<Inputs> states;
   for (int i = 0; i < 8; ++i) {
     const double stretch = i % 3 == 0 ? 1 + 1e-3 : 3;

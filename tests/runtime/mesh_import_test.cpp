@@ -15,6 +15,7 @@
 #include "runtime/mesh/closed_surface.h"
 #include "runtime/mesh/mesh_build.h"
 #include "runtime/mesh/mesh_tools.h"
+#include "tests/paths.h"
 #include "tests/runtime/mesh_helpers.h"
 
 #ifdef __SANITIZE_ADDRESS__
@@ -84,7 +85,7 @@ std::array<double, 2> dihedral_angles(const Mesh& mesh) {
 }
 
 TEST(mesh_import, the_bunny_is_filled_with_sound_tetrahedra) {
-  const Mesh surface = read_surface(ERGON_SOURCE_DIR "/scenes/meshes/bunny.obj");
+  const Mesh surface = read_surface(test::source("/scenes/meshes/bunny.obj"));
   const Mesh solid = fill_surface(surface, {.max_edge_length = 0.4});
   EXPECT_GT(solid.cell_count(), 12000);
   EXPECT_LT(solid.cell_count(), 18000);
@@ -97,7 +98,7 @@ TEST(mesh_import, the_bunny_is_filled_with_sound_tetrahedra) {
 }
 
 TEST(mesh_import, the_same_surface_gives_the_same_mesh) {
-  const Mesh surface = read_surface(ERGON_SOURCE_DIR "/scenes/meshes/bunny.obj");
+  const Mesh surface = read_surface(test::source("/scenes/meshes/bunny.obj"));
   const Mesh first = fill_surface(surface);
   const Mesh second = fill_surface(surface);
   EXPECT_EQ(first.X, second.X);

@@ -9,6 +9,7 @@
 
 #include "runtime/error.h"
 #include "runtime/mesh/mesh_import.h"
+#include "tests/paths.h"
 #include "tests/runtime/temporary_folder.h"
 
 namespace ergon {
@@ -313,7 +314,7 @@ TEST_F(mesh_surface, damaged_files_give_an_error_or_a_sound_mesh) {
 }
 
 TEST_F(mesh_surface, the_bunny_is_as_its_header_says) {
-  const Mesh mesh = read_surface(ERGON_SOURCE_DIR "/scenes/meshes/bunny.obj");
+  const Mesh mesh = read_surface(test::source("/scenes/meshes/bunny.obj"));
   EXPECT_EQ(mesh.vertices(), 1839);
   EXPECT_EQ(mesh.cell_count(), 3674);
   EXPECT_EQ(mesh.X(0, 0), 1.301895);

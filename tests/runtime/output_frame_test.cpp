@@ -11,6 +11,7 @@
 #include "runtime/mesh/mesh_build.h"
 #include "runtime/output/pvd.h"
 #include "runtime/output/vtu.h"
+#include "tests/paths.h"
 #include "tests/runtime/temporary_folder.h"
 
 namespace ergon {
@@ -23,7 +24,8 @@ struct Outcome {
 
 Outcome run_reader(const std::string& arguments) {
   // The system's interpreter: the one that the package python3-vtk9 serves.
-  const std::string command = "/usr/bin/python3 " ERGON_SOURCE_DIR "/tests/runtime/read_vtu.py " + arguments + " 2>&1";
+  const std::string command =
+      "/usr/bin/python3 " + test::source("/tests/runtime/read_vtu.py") + " " + arguments + " 2>&1";
   Outcome outcome;
   std::FILE* pipe = popen(command.c_str(), "r");
   if (!pipe) return outcome;

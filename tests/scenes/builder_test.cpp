@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "runtime/mesh/mesh_tools.h"
+#include "tests/paths.h"
 #include "tests/scenes/real_kernels.h"
 
 namespace ergon {
@@ -167,7 +168,7 @@ TEST(builder, quadrature_is_chosen_by_its_exactness) {
 }
 
 TEST(builder, membranes_and_lines_have_the_mass_of_their_thickness_and_cross_section) {
-  const std::string law = std::string(ERGON_SOURCE_DIR) + "/tests/errors/scenes/parts/membrane.energy";
+  const std::string law = test::source() + "/tests/errors/scenes/parts/membrane.energy";
   for (const std::string element : {"tri3", "tri6", "quad4", "quad9"}) {
     const BuiltScene sheet = build_text(time_part + R"(
 [[object]]
@@ -205,7 +206,7 @@ mesh = "parts/tet.obj"
 density = 1000
 energy = [{ law = "stable_neo_hookean", E = "0.5 MPa", nu = 0.4 }]
 )",
-             ERGON_SOURCE_DIR "/tests/errors/scenes/a.toml");
+             test::source("/tests/errors/scenes/a.toml"));
   EXPECT_EQ(omp_get_max_threads(), 3);
   omp_set_num_threads(before);
 }

@@ -9,13 +9,14 @@
 
 #include "runtime/error.h"
 #include "symbolic/energy.h"
+#include "tests/paths.h"
 
 namespace ergon {
 namespace {
 
 namespace fs = std::filesystem;
 
-const std::string shipped = ERGON_SOURCE_DIR "/energies";
+const std::string shipped = test::source("/energies");
 
 class catalogue : public testing::Test {
  protected:

@@ -8,6 +8,7 @@
 
 #include "scenes/scene_reader.h"
 #include "symbolic/diagnostic.h"
+#include "tests/paths.h"
 
 namespace ergon {
 namespace {
@@ -15,7 +16,7 @@ namespace {
 std::vector<std::string> scene_texts() {
   std::vector<std::filesystem::path> files;
   for (const char* folder : {"/scenes", "/tests/errors/scenes"})
-    for (const auto& entry : std::filesystem::directory_iterator(std::string(ERGON_SOURCE_DIR) + folder))
+    for (const auto& entry : std::filesystem::directory_iterator(test::source() + folder))
       if (entry.path().extension() == ".toml") files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   std::vector<std::string> texts;

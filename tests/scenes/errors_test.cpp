@@ -10,13 +10,14 @@
 
 #include "scenes/builder.h"
 #include "scenes/scene_reader.h"
+#include "tests/paths.h"
 
 namespace ergon {
 namespace {
 
 namespace fs = std::filesystem;
 
-const std::string root = ERGON_SOURCE_DIR;
+const std::string root = test::source();
 const std::string folder = root + "/tests/errors/scenes";
 
 std::vector<std::string> bad_scenes() {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "scenes/run.h"
+#include "tests/paths.h"
 #include "tests/scenes/real_kernels.h"
 
 namespace ergon {
@@ -16,7 +17,7 @@ struct FinishedScene {
   State end;
 };
 
-inline Scene shipped_scene(const std::string& name) { return read_scene(ERGON_SOURCE_DIR "/scenes/" + name); }
+inline Scene shipped_scene(const std::string& name) { return read_scene(test::source("/scenes/") + name); }
 
 // `steps`: 0 for all.
 inline FinishedScene finish(const Scene& scene, BuiltScene built, long steps = 0) {

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "scenes/scene_reader.h"
+#include "tests/paths.h"
 
 namespace ergon {
 namespace {
@@ -103,11 +104,11 @@ TEST(reader, says_that_a_file_cannot_be_read) {
   } catch (const SourceError& error) {
     EXPECT_STREQ(error.what(), "/no/such/scene.toml: cannot read this scene file: No such file or directory");
   }
-  EXPECT_THROW(read_scene(ERGON_SOURCE_DIR "/scenes"), SourceError);
+  EXPECT_THROW(read_scene(test::source("/scenes")), SourceError);
 }
 
 TEST(reference, is_what_the_reader_reads) {
-  const std::string path = ERGON_SOURCE_DIR "/scenes/README.md";
+  const std::string path = test::source("/scenes/README.md");
   if (std::getenv("ERGON_WRITE_EXPECTED") != nullptr) std::ofstream(path) << scene_reference_markdown();
   std::ifstream in(path);
   std::ostringstream file;

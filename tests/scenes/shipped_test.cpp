@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "tests/paths.h"
 #include "tests/scenes/finish_scene.h"
 
 namespace ergon {
@@ -11,7 +12,7 @@ namespace {
 
 TEST(shipped_scenes, all_are_read_and_built) {
   int scenes = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(ERGON_SOURCE_DIR "/scenes")) {
+  for (const auto& entry : std::filesystem::directory_iterator(test::source("/scenes"))) {
     if (entry.path().extension() != ".toml") continue;
     ++scenes;
     EXPECT_NO_THROW(build_scene(read_scene(entry.path().string()), shipped_energies(), real_kernels)) << entry.path();
@@ -141,7 +142,7 @@ TEST(SlowScenes, affine_boxes_lie_on_a_cloth) {
 
 // With another coefficient of friction everywhere.
 FinishedScene finish_with_friction(const std::string& name, double mu) {
-  Scene scene = read_scene(ERGON_SOURCE_DIR "/scenes/" + name);
+  Scene scene = read_scene(test::source("/scenes/") + name);
   scene.contact->mu = mu;
   for (SceneGround& ground : scene.grounds) ground.mu = mu;
   FinishedScene out{build_scene(scene, shipped_energies(), real_kernels), {}, {}};

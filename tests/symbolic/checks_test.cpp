@@ -9,6 +9,7 @@
 #include "symbolic/eigenvalues.h"
 #include "symbolic/reference.h"
 #include "symbolic/sample_states.h"
+#include "tests/paths.h"
 #include "tests/symbolic/energy_files.h"
 
 namespace ergon {
@@ -47,7 +48,7 @@ INSTANTIATE_TEST_SUITE_P(Files, Catalogue, testing::ValuesIn(test::catalogue_nam
 
 TEST(Checks, SolidsAreCheckedExactly) {
   std::vector<std::string> all;
-  for (const Finding& f : check_energy(read_energy(ERGON_SOURCE_DIR "/energies/solids/neo_hookean.energy")))
+  for (const Finding& f : check_energy(read_energy(test::source("/energies/solids/neo_hookean.energy"))))
     all.push_back(told(f));
   EXPECT_EQ(all,
             (std::vector<std::string>{

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "symbolic/compose.h"
+#include "tests/paths.h"
 
 namespace ergon::test {
 
@@ -21,7 +22,7 @@ inline std::string contents(const std::filesystem::path& file) {
 // All .energy files below a folder of the source tree, sorted.
 inline std::vector<std::filesystem::path> energy_files(const std::string& folder) {
   std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(std::string(ERGON_SOURCE_DIR) + "/" + folder))
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(test::source() + "/" + folder))
     if (entry.path().extension() == ".energy") files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   return files;
@@ -29,7 +30,7 @@ inline std::vector<std::filesystem::path> energy_files(const std::string& folder
 
 // All complete energies of the catalogue, sorted by name.
 inline const std::vector<Energy>& catalogue() {
-  static const std::vector<Energy> energies = energies_below(ERGON_SOURCE_DIR "/energies");
+  static const std::vector<Energy> energies = energies_below(test::source("/energies"));
   return energies;
 }
 

@@ -6,6 +6,7 @@
 #include "symbolic/elaborate.h"
 #include "symbolic/ginac_algebra.h"
 #include "symbolic/reference.h"
+#include "tests/paths.h"
 #include "tests/symbolic/energy_files.h"
 
 namespace ergon {
@@ -42,12 +43,12 @@ void expect_same_as_reference(const Energy& energy, const Inputs& inputs) {
 TEST(Ginac, SolidsAgreeWithTheReference) {
   const Inputs inputs = {{"F", {1.1, 0.2, 0, -0.3, 0.9, 0.1, 0.05, 0, 1.2}}, {"E", {2}}, {"nu", {0.3}}};
   for (const char* law : {"neo_hookean", "stable_neo_hookean", "st_venant_kirchhoff", "linear_elasticity"})
-    expect_same_as_reference(read_energy(std::string(ERGON_SOURCE_DIR "/energies/solids/") + law + ".energy"), inputs);
+    expect_same_as_reference(read_energy(test::source("/energies/solids/") + law + ".energy"), inputs);
 }
 
 TEST(Ginac, StencilsAgreeWithTheReference) {
   expect_same_as_reference(
-      read_energy(ERGON_SOURCE_DIR "/energies/rods/spring.energy"),
+      read_energy(test::source("/energies/rods/spring.energy")),
       {{"x0", {0.1, 0.2, 0.3}}, {"x1", {1, 2, -1}}, {"X0", {0, 0, 0}}, {"X1", {1, 1, 1}}, {"k", {3}}});
   expect_same_as_reference(
       test::shipped("log_barrier:half_space"),
@@ -77,7 +78,7 @@ TEST(Ginac, PositiveParametersSimplify) {
 }
 
 TEST(Ginac, ExactValuesReplaceSymbols) {
-  const Energy e = read_energy(ERGON_SOURCE_DIR "/energies/solids/neo_hookean.energy");
+  const Energy e = read_energy(test::source("/energies/solids/neo_hookean.energy"));
   GinacAlgebra algebra({{"F", {2, 0, 0, 0, 2, 0, 0, 0, 2}}, {"E", {1}}, {"nu", {0}}});
   const ex value = elaborate(e, "", algebra).value;
   const ex expected = GiNaC::numeric(1, 4) * 9 - GiNaC::log(ex(8)) / 2;

@@ -5,6 +5,7 @@
 #include "symbolic/functions.h"
 #include "symbolic/print.h"
 #include "symbolic/statements.h"
+#include "tests/paths.h"
 #include "tests/symbolic/energy_files.h"
 
 namespace ergon {
@@ -123,7 +124,7 @@ TEST(Statements, CommentsContinuationsAndPlaces) {
 }
 
 TEST(EnergyFiles, DensityIsRead) {
-  const Energy e = read_energy(ERGON_SOURCE_DIR "/energies/solids/stable_neo_hookean.energy");
+  const Energy e = read_energy(test::source("/energies/solids/stable_neo_hookean.energy"));
   EXPECT_EQ(e.kind, Energy::Kind::density);
   EXPECT_EQ(e.name, "stable_neo_hookean");
   EXPECT_EQ(e.geometry, "solid");

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/paths.h"
 #include "tests/symbolic/energy_files.h"
 
 namespace ergon {
@@ -60,7 +61,7 @@ TEST(Print, Latex) {
 }
 
 TEST(Print, LatexOfASolid) {
-  const Energy energy = read_energy(ERGON_SOURCE_DIR "/energies/solids/neo_hookean.energy");
+  const Energy energy = read_energy(test::source("/energies/solids/neo_hookean.energy"));
   EXPECT_EQ(
       to_latex(*energy.value),
       "\\frac{\\mu}{2} \\, \\left(\\operatorname{tr}\\left(\\mathbf{F}^{\\mathsf{T}} \\, \\mathbf{F}\\right) - "

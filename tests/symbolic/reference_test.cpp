@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "tests/paths.h"
 #include "tests/symbolic/energy_files.h"
 
 namespace ergon {
@@ -89,7 +90,7 @@ TEST(Reference, AngleOfAVector) {
 }
 
 TEST(Reference, SpringHasItsTextbookStiffness) {
-  const Energy spring = read_energy(ERGON_SOURCE_DIR "/energies/rods/spring.energy");
+  const Energy spring = read_energy(test::source("/energies/rods/spring.energy"));
   const ReferenceValue r = evaluate_reference(
       spring, "", {{"x0", {0, 0, 0}}, {"x1", {2, 0, 0}}, {"X0", {0, 0, 0}}, {"X1", {1, 0, 0}}, {"k", {3}}});
   EXPECT_DOUBLE_EQ(r.value, 1.5);
@@ -105,7 +106,7 @@ TEST(Reference, SpringHasItsTextbookStiffness) {
 TEST(Reference, KeepsDigitsThroughCancellation) {
   const double e = 0x1p-30;  // strain
   for (const char* law : {"neo_hookean", "stable_neo_hookean", "st_venant_kirchhoff", "linear_elasticity"}) {
-    const Energy energy = read_energy(std::string(ERGON_SOURCE_DIR "/energies/solids/") + law + ".energy");
+    const Energy energy = read_energy(test::source("/energies/solids/") + law + ".energy");
     const ReferenceValue r =
         evaluate_reference(energy, "", {{"F", {1 + e, 0, 0, 0, 1, 0, 0, 0, 1}}, {"E", {1}}, {"nu", {0.25}}});
     EXPECT_NEAR(r.value, 0.6 * e * e, 1e-8 * e * e) << law;  // (la + 2 mu)/2 e^2 with la = mu = 0.4
@@ -115,7 +116,7 @@ TEST(Reference, KeepsDigitsThroughCancellation) {
 }
 
 TEST(Reference, MoreDigitsChangeNothing) {
-  const Energy energy = read_energy(ERGON_SOURCE_DIR "/energies/solids/neo_hookean.energy");
+  const Energy energy = read_energy(test::source("/energies/solids/neo_hookean.energy"));
   const Inputs inputs = {{"F", {1.1, 0.2, 0, -0.3, 0.9, 0.1, 0.05, 0, 1.2}}, {"E", {1e5}}, {"nu", {0.45}}};
   const ReferenceValue a = evaluate_reference(energy, "", inputs, 40), b = evaluate_reference(energy, "", inputs, 120);
   EXPECT_EQ(a.value, b.value);

@@ -8,6 +8,7 @@
 
 #include "runtime/lanes/lanes.h"
 #include "symbolic/stretches.h"
+#include "tests/paths.h"
 #include "tests/symbolic/energy_files.h"
 #include "tests/tools/command.h"
 #include "tools/accuracy.h"
@@ -116,7 +117,7 @@ TEST_F(AccuracyCommand, NamesTheNearestEnergy) {
 // The states are doubles, and what is made of them is exact: F - I differs from the differences of displacements by
 // their rounding only.
 TEST(AccuracyStates, LieAtTheStrainAskedFor) {
-  const Energy energy = read_energy(ERGON_SOURCE_DIR "/energies/solids/stable_neo_hookean.energy");
+  const Energy energy = read_energy(test::source("/energies/solids/stable_neo_hookean.energy"));
   std::mt19937_64 random(4);
   for (const double strain : {1e-9, 1e-3, 10.0}) {
     const auto state = accuracy_state(energy, "", strain, random);

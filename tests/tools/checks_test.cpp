@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "tests/paths.h"
 #include "tests/tools/command.h"
 
 namespace ergon {
@@ -13,13 +14,13 @@ class Checks : public CommandTest {
  protected:
   void SetUp() override {
     CommandTest::SetUp();
-    std::filesystem::copy(ERGON_SOURCE_DIR "/.clang-format", folder / ".clang-format");
+    std::filesystem::copy(test::source("/.clang-format"), folder / ".clang-format");
     write("runtime/good.h", "#pragma once\n#include <vector>\n\n#include \"runtime/other.h\"\n");
     write("symbolic/good.cpp", "#include \"symbolic/good.h\"\n");
     write("codegen/good.cpp", "#include \"runtime/kernel.h\"\n#include \"symbolic/energy.h\"\n");
     write("tools/good.sh", "#!/bin/bash\necho good\n");
   }
-  Answer checks() { return shell("ERGON_TREE=\"$PWD\" '" ERGON_SOURCE_DIR "/tools/checks.sh'"); }
+  Answer checks() { return shell("ERGON_TREE=\"$PWD\" '" + test::source("/tools/checks.sh") + "'"); }
   void expect_found(const std::string& check, const std::string& message) {
     const Answer answer = checks();
     EXPECT_EQ(answer.code, 1);
@@ -91,17 +92,17 @@ TEST_F(Checks, ScriptsAndPathsAreLookedAt) {
 }
 
 TEST_F(Checks, UnknownArgumentsAreRefused) {
-  const Answer checks = shell(ERGON_SOURCE_DIR "/tools/checks.sh --tidi");
+  const Answer checks = shell(test::source("/tools/checks.sh") + " --tidi");
   EXPECT_EQ(checks.code, 1);
   EXPECT_EQ(checks.err, "ergon: error: unknown argument '--tidi'; usage: tools/checks.sh [--tidy]\n");
-  const Answer test = shell(ERGON_SOURCE_DIR "/tools/test --fats");
+  const Answer test = shell(test::source("/tools/test") + " --fats");
   EXPECT_EQ(test.code, 1);
   EXPECT_EQ(test.err, "ergon: error: unknown argument '--fats'; usage: tools/test [--fast]\n");
 }
 
 TEST_F(Checks, NothingThatTheProjectNeedsIsMissing) {
   // The tests run where tools/setup.sh has been: its own look-up then finds nothing to install.
-  const Answer answer = shell("bash -c \"source '" ERGON_SOURCE_DIR "/tools/setup.sh' && missing_packages\"");
+  const Answer answer = shell("bash -c \"source '" + test::source("/tools/setup.sh") + "' && missing_packages\"");
   EXPECT_EQ(answer.code, 0) << answer.err;
   EXPECT_EQ(answer.out, "");
 }

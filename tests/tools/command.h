@@ -10,6 +10,7 @@
 #include <sstream>
 #include <string>
 
+#include "tests/paths.h"
 #include "tests/runtime/temporary_folder.h"
 
 namespace ergon {
@@ -43,7 +44,7 @@ class CommandTest : public testing::Test {
     const int status = std::system(all.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 128, read("stdout.txt"), read("stderr.txt")};
   }
-  Answer ergon(const std::string& arguments) const { return shell(ERGON_BINARY_DIR "/ergon " + arguments); }
+  Answer ergon(const std::string& arguments) const { return shell(test::built("/ergon") + " " + arguments); }
 
   std::filesystem::path folder;
 

@@ -2,6 +2,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "tests/paths.h"
 #include "tests/tools/command.h"
 
 namespace ergon {
@@ -162,14 +163,14 @@ TEST_F(SlowCommandLine, TheCatalogueIsCompiledOnceForAllWidths) {
 
 TEST_F(CommandLine, TheProgramBringsTheCataloguesKernels) {
   // No compiler, an empty cache: the kernels compiled with the program are found beside it.
-  const Answer answer = shell("PATH=/nowhere " ERGON_BINARY_DIR "/ergon compile stable_neo_hookean");
+  const Answer answer = shell("PATH=/nowhere " + test::built("/ergon") + " compile stable_neo_hookean");
   EXPECT_EQ(answer.code, 0) << answer.err;
   EXPECT_THAT(answer.out, HasSubstr("; cached, checked in "));
 }
 
 TEST_F(CommandLine, AMissingCompilerIsNamedWithItsRemedy) {
   write("my.energy", "# A spring to the origin.\nenergy my point\ndof x m\nparam k N/m (0, inf)\nvalue k/2*norm2(x)\n");
-  const Answer answer = shell("ERGON_CXX=/nowhere/g++ " ERGON_BINARY_DIR "/ergon compile my.energy");
+  const Answer answer = shell("ERGON_CXX=/nowhere/g++ " + test::built("/ergon") + " compile my.energy");
   EXPECT_EQ(answer.code, 1);
   EXPECT_EQ(answer.err,
             "ergon: error: no C++ compiler to make a kernel with: '/nowhere/g++': No such file or directory; install "
@@ -177,7 +178,7 @@ TEST_F(CommandLine, AMissingCompilerIsNamedWithItsRemedy) {
 }
 
 TEST_F(CommandLine, AStandardOutputThatIsFullFails) {
-  const Answer answer = shell(ERGON_BINARY_DIR "/ergon show stable_neo_hookean >/dev/full");
+  const Answer answer = shell(test::built("/ergon") + " show stable_neo_hookean >/dev/full");
   EXPECT_EQ(answer.code, 1);
   EXPECT_EQ(answer.err, "ergon: error: the standard output could not be written\n");
 }

@@ -6,6 +6,7 @@
 
 #include "symbolic/energy.h"
 #include "symbolic/functions.h"
+#include "tests/paths.h"
 #include "tests/symbolic/energy_files.h"
 #include "tests/tools/command.h"
 
@@ -14,7 +15,7 @@ namespace {
 
 std::string file_text(const std::string& name) {
   std::ostringstream text;
-  text << std::ifstream(std::string(ERGON_SOURCE_DIR "/") + name).rdbuf();
+  text << std::ifstream(test::source("/") + name).rdbuf();
   return text.str();
 }
 
@@ -60,8 +61,8 @@ TEST_F(Docs, EnergiesInTheLanguageReferenceAreSound) {
 TEST_F(SlowDocs, TheStepsOfAuthoringWork) {
   const std::vector<std::string> scripts = blocks(file_text("docs/language.md"), "sh");
   ASSERT_EQ(scripts.size(), 1u);
-  std::filesystem::create_symlink(ERGON_SOURCE_DIR "/tests", folder / "tests");
-  const Answer answer = shell("set -e; PATH=" ERGON_BINARY_DIR ":$PATH\n" + scripts[0]);
+  std::filesystem::create_symlink(test::source("/tests"), folder / "tests");
+  const Answer answer = shell("set -e; PATH=" + test::built() + ":$PATH\n" + scripts[0]);
   EXPECT_EQ(answer.code, 0) << answer.out << answer.err;
   for (const char* made : {"my_rubber.energy", "my_rubber.svg", "my_fit.svg", "my_bending.svg", "my_bending.csv",
                            "out/my_scene/my_scene.pvd"})
@@ -87,7 +88,7 @@ TEST_F(Docs, FoldersAndFilesThatAreNamedExist) {
       const bool path = word.find('/') != std::string::npos && word.find_first_of(" *<>{}()^\n$=") == std::string::npos;
       const std::string top = word.substr(0, word.find('/'));
       if (path && top != "build" && top != "out" && top != "." && top != "") {
-        EXPECT_TRUE(std::filesystem::exists(std::string(ERGON_SOURCE_DIR "/") + word)) << document << ": " << word;
+        EXPECT_TRUE(std::filesystem::exists(test::source("/") + word)) << document << ": " << word;
       }
       at = text.find('`', end + 1);
     }
@@ -118,9 +119,9 @@ TEST_F(SlowReadme, EveryCommandWorks) {
   const std::string text = file_text("README.md");
   EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 150);
   for (const char* name : {"energies", "scenes", "docs"}) {
-    std::filesystem::create_symlink(std::string(ERGON_SOURCE_DIR "/") + name, folder / name);
+    std::filesystem::create_symlink(test::source("/") + name, folder / name);
   }
-  std::filesystem::create_symlink(ERGON_BINARY_DIR, folder / "build");
+  std::filesystem::create_symlink(test::built(), folder / "build");
   int commands = 0;
   for (const std::string& block : blocks(text, "sh")) {
     std::istringstream lines(block);
@@ -131,7 +132,7 @@ TEST_F(SlowReadme, EveryCommandWorks) {
       const std::string program = command.substr(0, command.find(' '));
       if (program == "./tools/run" || program == "./tools/test" || program == "./tools/checks.sh") {
         // They would build and test again from within the tests.
-        const auto script = std::filesystem::path(ERGON_SOURCE_DIR) / program;
+        const auto script = std::filesystem::path(test::source()) / program;
         EXPECT_NE(std::filesystem::status(script).permissions() & std::filesystem::perms::owner_exec,
                   std::filesystem::perms::none)
             << script;

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "symbolic/reference.h"
+#include "tests/paths.h"
 #include "tests/tools/command.h"
 
 namespace ergon {
@@ -44,7 +45,7 @@ TEST_F(Eval, AgreesWithTheReferenceOfTheSameEnergy) {
   EXPECT_EQ(result["elements"], 1);
   EXPECT_EQ(result["indefinite"], 0);
 
-  const Energy energy = read_energy(ERGON_SOURCE_DIR "/energies/solids/stable_neo_hookean.energy");
+  const Energy energy = read_energy(test::source("/energies/solids/stable_neo_hookean.energy"));
   const ReferenceValue reference = evaluate_reference(energy, "", {{"F", kF}, {"E", {1e5}}, {"nu", {0.3}}});
   // The corners' shape function gradients are the unit vectors and minus their sum: x_a depends on F's column a-1.
   Eigen::Matrix<double, 9, 12> chain = Eigen::Matrix<double, 9, 12>::Zero();

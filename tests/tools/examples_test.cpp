@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "tests/paths.h"
 #include "tests/tools/command.h"
 
 namespace ergon {
@@ -11,7 +12,7 @@ using testing::HasSubstr;
 
 class Examples : public CommandTest {
  protected:
-  Answer example(const std::string& command) { return shell(ERGON_BINARY_DIR "/examples/" + command); }
+  Answer example(const std::string& command) { return shell(test::built("/examples/") + command); }
 };
 class SlowExamples : public Examples {};
 
@@ -28,7 +29,7 @@ TEST_F(Examples, ASolverOfOnesOwnConverges) {
 }
 
 TEST_F(SlowExamples, ASurfaceIsLaidOutFlat) {
-  const Answer answer = example("surface_parametrisation '" ERGON_SOURCE_DIR "/scenes/meshes/bunny.obj' flat.obj");
+  const Answer answer = example("surface_parametrisation '" + test::source("/scenes/meshes/bunny.obj") + "' flat.obj");
   EXPECT_EQ(answer.code, 0) << answer.out << answer.err;
   EXPECT_THAT(answer.out, HasSubstr("no triangle turned over: true"));
   // The distortion of every isometric layout is 0; that of a closed surface cut once stays below a few times its area.

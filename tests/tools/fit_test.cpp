@@ -7,6 +7,7 @@
 
 #include "runtime/error.h"
 #include "symbolic/diagnostic.h"
+#include "tests/paths.h"
 #include "tests/symbolic/energy_files.h"
 #include "tests/tools/command.h"
 #include "tests/tools/xml.h"
@@ -73,7 +74,7 @@ TEST(SlowFit, NamesWhatTheDataDoesNotDetermine) {
 
 class FitCommand : public CommandTest {
  protected:
-  const std::string treloar = "'" ERGON_SOURCE_DIR "/tests/tools/data/treloar.csv'";
+  const std::string treloar = "'" + test::source("/tests/tools/data/treloar.csv") + "'";
 
   nlohmann::json json(const std::string& arguments) {
     const Answer answer = ergon("fit " + arguments + " --json");

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include "tests/paths.h"
 #include "tests/tools/command.h"
 
 namespace ergon {
@@ -82,7 +83,7 @@ TEST_F(RunCommand, AFolderThatCannotBeMadeIsBadInput) {
 
 TEST_F(RunCommand, AnInterruptKeepsWhatWasDone) {
   write("long.toml", scene(1000000));
-  const Answer answer = shell(ERGON_BINARY_DIR
+  const Answer answer = shell(test::built() +
                               "/ergon run long.toml --out results --quiet & pid=$!\n"
                               "for i in $(seq 1000); do [ -s results/report.jsonl ] && break; sleep 0.05; done\n"
                               "kill -INT $pid; wait $pid");

@@ -1,4 +1,5 @@
 #include "tools/sample.h"
+#include "tests/paths.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -35,7 +36,7 @@ TEST(Sample, NoiseHasTheAmplitudeAskedForAndIsTheSameEveryTime) {
 }
 
 TEST(Sample, ValuesAreWithinTheirRanges) {
-  const Energy energy = read_energy(ERGON_SOURCE_DIR "/energies/contact/friction.energy");
+  const Energy energy = read_energy(test::source("/energies/contact/friction.energy"));
   for (int attempt = 0; attempt < 20; ++attempt) {
     for (Role role : {Role::param, Role::lag}) {
       for (const auto& [name, values] : sample_values(energy, role, attempt)) {
