@@ -14,6 +14,9 @@ using Pair = std::array<int, 2>;
 // Of pairs that are looked at to begin with, so that most others are seen to be free up to their bound at once.
 constexpr std::ptrdiff_t kSample = 64;
 constexpr std::ptrdiff_t kSerial = 1024;  // pairs: fewer are not worth waking other threads
+// Of the largest coordinate: positions x + t*direction are rounded twice, and those of affine bodies gather some
+// roundings more until they are made anew from the control points.
+constexpr double kRounding = 0x1p-47;
 
 template <size_t N>
 const int (*plain(const std::vector<std::array<int, N>>& items))[N] {
@@ -25,6 +28,7 @@ struct Motion {
   const Eigen::Matrix3Xd& x;
   const Eigen::Matrix3Xd& direction;
   double kept;
+  double rounding;  // m, of distances
 
   // `second`: the first vertex of the other primitive.
   template <size_t count>
@@ -35,7 +39,7 @@ struct Motion {
       at[k] = x.col(v[k]);
       motion[k] = direction.col(v[k]);
     }
-    return of({at, motion, surface.offset(kind, pair, v[0], v[second]), kept, at_most});
+    return of({at, motion, surface.offset(kind, pair, v[0], v[second]) + rounding, kept, at_most});
   }
 };
 
@@ -79,11 +83,18 @@ double smallest_of_many(const std::vector<Pair>& pairs, double at_most, const Fi
   return best;
 }
 
+double rounding_of(const CollisionSurface& surface, const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& direction) {
+  double extent = 0;
+  for (const int v : surface.points)
+    extent = std::max(extent, (x.col(v).cwiseAbs() + direction.col(v).cwiseAbs()).maxCoeff());
+  return kRounding * extent;
+}
+
 }  // namespace
 
 double largest_step(const CollisionSurface& surface, const Candidates& candidates, const Eigen::Matrix3Xd& x,
                     const Eigen::Matrix3Xd& direction, double kept) {
-  const Motion motion{surface, x, direction, kept};
+  const Motion motion{surface, x, direction, kept, rounding_of(surface, x, direction)};
   const auto& points = surface.points;
   const auto& edges = surface.edges;
   const auto& triangles = surface.triangles;
@@ -97,7 +108,8 @@ double largest_step(const CollisionSurface& surface, const Candidates& candidate
       [&](const Pair* pairs, int count, double at_most, lanes::StepRoom& room) {
         for (int i = 0; i < count; ++i) {
           room.separation[i] =
-              surface.offset(RestOffsets::point_triangle, pairs[i], point(pairs[i][0]), triangle(pairs[i][1])[0]);
+              surface.offset(RestOffsets::point_triangle, pairs[i], point(pairs[i][0]), triangle(pairs[i][1])[0]) +
+              motion.rounding;
         }
         return operations.point_triangle({x.data(), direction.data(), kept, at_most}, points.data(), plain(triangles),
                                          reinterpret_cast<const int(*)[2]>(pairs), count, room);
@@ -112,7 +124,8 @@ double largest_step(const CollisionSurface& surface, const Candidates& candidate
       [&](const Pair* pairs, int count, double at_most, lanes::StepRoom& room) {
         for (int i = 0; i < count; ++i) {
           room.separation[i] =
-              surface.offset(RestOffsets::edge_edge, pairs[i], edge(pairs[i][0])[0], edge(pairs[i][1])[0]);
+              surface.offset(RestOffsets::edge_edge, pairs[i], edge(pairs[i][0])[0], edge(pairs[i][1])[0]) +
+              motion.rounding;
         }
         return operations.edge_edge({x.data(), direction.data(), kept, at_most}, plain(edges),
                                     reinterpret_cast<const int(*)[2]>(pairs), count, room);

@@ -97,21 +97,8 @@ NewtonResult Newton::minimise(System& system, Eigen::Matrix3Xd& x, const NewtonO
       return result;
     }
 
-    evaluate_hessian(system, x, options, result);
-    const double slope = find_direction(system, x, options, result);
-    if (!result.reason.empty()) return result;
-    result.step_speed = largest_motion(system, direction_).value / options.dt;
-    if (result.iterations == 0) result.first_step_speed = result.step_speed;
-
-    const double used = blend_;
-    const Progress progress = take_step(system, x, slope, options, contact, result);
+    const Progress progress = iterate(system, x, options, contact, result);
     if (!progress.found) return result;
-    ++result.iterations;
-    if (options.on_demand) {
-      const bool bold = trial_.fraction < bold_fraction;
-      blend_ = bold ? std::min(1.0, std::max(first_blend, blend_growth * blend_)) : lowered(blend_);
-    }
-    result.projected_iterations += used > 0 && options.projection != Projection::none;
     if (contact && contact->adapt(x)) {
       evaluate_value(system, x, contact, result);
       continue;
@@ -129,19 +116,39 @@ NewtonResult Newton::minimise(System& system, Eigen::Matrix3Xd& x, const NewtonO
   }
 }
 
+// One step from x, whose energy is known.
+Newton::Progress Newton::iterate(System& system, Eigen::Matrix3Xd& x, const NewtonOptions& options, Contact* contact,
+                                 NewtonResult& result) {
+  evaluate_hessian(system, x, options, result);
+  const double slope = find_direction(system, x, options, result);
+  if (!result.reason.empty()) return {};
+  result.step_speed = largest_motion(system, direction_).value / options.dt;
+  if (result.iterations == 0) result.first_step_speed = result.step_speed;
+
+  const double used = blend_;
+  const Progress progress = take_step(system, x, slope, options, contact, result);
+  if (!progress.found) return progress;
+  ++result.iterations;
+  if (options.on_demand) {
+    const bool bold = trial_.fraction < bold_fraction;
+    blend_ = bold ? std::min(1.0, std::max(first_blend, blend_growth * blend_)) : lowered(blend_);
+  }
+  result.projected_iterations += used > 0 && options.projection != Projection::none;
+  return progress;
+}
+
 // Moves x along direction_ as far as contact and energy let it.
 Newton::Progress Newton::take_step(System& system, Eigen::Matrix3Xd& x, double slope, const NewtonOptions& options,
                                    Contact* contact, NewtonResult& result) {
   Progress progress;
   double fraction = 1;
-  bool gaps_settled = true;
   if (contact) {
     const Stopwatch watch(result.seconds.contact);
     fraction = contact->largest_step(x, direction_);
-    gaps_settled = contact->gap_change(x, direction_) <= largest_gap_change;
+    progress.gap_change = contact->gap_change(x, direction_);
   }
   progress.is_near = result.step_speed <= near_limit * options.tolerance;
-  progress.is_last = result.step_speed <= options.tolerance && gaps_settled;
+  progress.is_last = result.step_speed <= options.tolerance && progress.gap_change <= largest_gap_change;
   if (!(fraction > 0) && !progress.is_last) {
     refuse_standstill(system, x, *contact, result);
     return progress;

@@ -94,9 +94,11 @@ class Newton {
     bool is_near = false;       // the step was within a factor of the tolerance
     bool is_last = false;       // the step was below the tolerance
     bool is_quadratic = false;  // the energy fell by what the quadratic model foretold
+    double gap_change = 0;      // Contact::gap_change of the whole step
   };
   bool follow(System& system, Eigen::Matrix3Xd& x, const NewtonOptions& options, Contact* contact,
               NewtonResult& result);
+  bool relax(System& system, Eigen::Matrix3Xd& x, const NewtonOptions& options, Contact* contact, NewtonResult& result);
   void add_pull(System& system, const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& way, double rate);
   void evaluate_value(System& system, const Eigen::Matrix3Xd& x, Contact* contact, NewtonResult& result);
   void evaluate_gradient(System& system, const Eigen::Matrix3Xd& x, NewtonResult& result);
@@ -104,6 +106,8 @@ class Newton {
   void blend(double part);
   double find_direction(System& system, const Eigen::Matrix3Xd& x, const NewtonOptions& options, NewtonResult& result);
   std::optional<double> solve_direction(System& system, NewtonResult& result);
+  Progress iterate(System& system, Eigen::Matrix3Xd& x, const NewtonOptions& options, Contact* contact,
+                   NewtonResult& result);
   Progress take_step(System& system, Eigen::Matrix3Xd& x, double slope, const NewtonOptions& options, Contact* contact,
                      NewtonResult& result);
   bool certainly_converged(const System& system, const NewtonOptions& options, NewtonResult& result) const;

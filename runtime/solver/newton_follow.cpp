@@ -1,6 +1,7 @@
 // Prescribed motion: vertices without degrees of freedom go to where they are to be, and the free ones follow by Newton
-// steps for the motion that is left, each as far as contact lets it. No energy is compared on the way, since the motion
-// does work; the minimisation that comes after does that.
+// steps for the motion that is left, each as far as contact lets it. No energy is compared in these, since the motion
+// does work. Where contact stops one, the free vertices first give way with the others held: a motion that only went on
+// would bring gaps down to a tenth each time, without end.
 
 #include <fmt/format.h>
 
@@ -15,6 +16,8 @@ namespace {
 
 constexpr double difference = 1e-4;  // of a gap, or of the way left, that the motion is tried by
 constexpr int max_halvings = 40;
+constexpr double given_way = 0.5;     // largest change of gaps by a Newton step that shows them near their balance
+constexpr int most_relaxations = 20;  // Newton steps between two parts of the motion
 
 struct Left {
   double length = 0;  // m
@@ -44,6 +47,20 @@ void Newton::add_pull(System& system, const Eigen::Matrix3Xd& x, const Eigen::Ma
   gradient_ += moved_gradient_ / part;
 }
 
+// Newton steps with what is prescribed held where it is, until gaps are near their balance.
+bool Newton::relax(System& system, Eigen::Matrix3Xd& x, const NewtonOptions& options, Contact* contact,
+                   NewtonResult& result) {
+  for (int i = 0; i < most_relaxations && result.iterations < options.max_iterations; ++i) {
+    evaluate_value(system, x, contact, result);
+    const Progress progress = iterate(system, x, options, contact, result);
+    if (!progress.found) return result.at_rounding;
+    ++result.follow_iterations;
+    contact->adapt(x);
+    if (trial_.fraction == 1 && progress.gap_change <= given_way) return true;
+  }
+  return true;
+}
+
 bool Newton::follow(System& system, Eigen::Matrix3Xd& x, const NewtonOptions& options, Contact* contact,
                     NewtonResult& result) {
   Eigen::Matrix3Xd way;
@@ -59,6 +76,7 @@ bool Newton::follow(System& system, Eigen::Matrix3Xd& x, const NewtonOptions& op
       result.worst_vertex = left.vertex;
       return false;
     }
+    blend_ = 1;
     evaluate_value(system, x, contact, result);
     evaluate_hessian(system, x, options, result);
     double rate = 0;
@@ -95,6 +113,7 @@ bool Newton::follow(System& system, Eigen::Matrix3Xd& x, const NewtonOptions& op
     x.swap(moved_);
     ++result.iterations;
     ++result.follow_iterations;
+    if (fraction < 1 && contact && !relax(system, x, options, contact, result)) return false;
   }
 }
 

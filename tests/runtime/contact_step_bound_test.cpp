@@ -8,6 +8,7 @@
 #include "runtime/contact/step_bound.h"
 #include "runtime/lanes/lanes.h"
 #include "runtime/lanes/steps.h"
+#include "runtime/predicates.h"
 #include "tests/runtime/count_allocations.h"
 #include "tools/contact_cases.h"
 
@@ -115,6 +116,47 @@ TEST(ContactStepBound, AllocatesNothing) {
   const double step = largest_step(l.surface, l.candidates, l.x, l.direction);
   EXPECT_EQ(testing::allocations(), before);
   EXPECT_LT(step, 1);
+}
+
+// A point that is driven into a triangle again and again: its gap falls to a tenth each time, until rounding the
+// position would decide on which side it is.
+TEST(ContactStepBound, EndsBeforeRoundedPositionsPassThrough) {
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (int trial = 0; trial < 200; ++trial) {
+    const double size = std::pow(10.0, 3 * uniform(random));
+    Layers l;
+    l.x.resize(3, 4);
+    l.x << 0, 1, -1, 0, 0, 0, 0, 1, 1, 0, 0, 0;
+    for (Eigen::Index v = 0; v < 4; ++v)
+      l.x.col(v) += Vector3d(3, 2, 1) + 0.2 * Vector3d(uniform(random), uniform(random), uniform(random));
+    l.x *= size;
+    const Vector3d inside = (l.x.col(1) + l.x.col(2) + l.x.col(3)) / 3;
+    l.x.col(0) = inside + 1e-2 * (l.x.col(0) - inside);
+    l.surface.points = {0, 1, 2, 3};
+    l.surface.edges = {{1, 2}, {2, 3}, {1, 3}};
+    l.surface.triangles = {{1, 2, 3}};
+    l.surface.object = {0, 1, 1, 1};
+    l.surface.moving = {1, 1, 1, 1};
+    l.surface.radius = {0, 0};
+    l.surface.meet = {{1, 1}, {1, 1}};
+    l.candidates.point_triangle = {{0, 0}};
+    const auto side = [&] { return orientation(l.x.col(1), l.x.col(2), l.x.col(3), l.x.col(0)); };
+    const int before = side();
+    ASSERT_NE(before, 0);
+    int steps = 0;
+    while (true) {
+      l.direction = Eigen::Matrix3Xd::Zero(3, 4);
+      for (Eigen::Index v = 0; v < 4; ++v)
+        l.direction.col(v) = 1e-3 * size * Vector3d(uniform(random), uniform(random), uniform(random));
+      l.direction.col(0) += 2 * (inside - l.x.col(0));
+      const double step = largest_step(l.surface, l.candidates, l.x, l.direction);
+      if (!(step > 0) || ++steps == 100) break;
+      l.x += step * l.direction;
+      ASSERT_EQ(side(), before) << trial << ", after step " << steps;
+    }
+    EXPECT_GT(steps, 3);
+  }
 }
 
 TEST(ContactStepBound, WithoutCandidatesNothingBoundsTheStep) {

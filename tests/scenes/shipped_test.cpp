@@ -67,6 +67,13 @@ TEST(SlowScenes, a_ball_goes_through_a_tube_that_is_narrower) {
   EXPECT_GT(mean(tube, tube.end.x, 0, 0), 0.2);  // beyond the tube's end
 }
 
+// 12 mm of the piston in a step, a third of the ball's radius.
+TEST(SlowScenes, a_ball_is_pushed_into_the_tube_by_long_steps) {
+  const FinishedScene tube = finish("ball_through_tube.toml", 12, 0.04);
+  ASSERT_EQ(tube.summary.failure, "");
+  EXPECT_GT(mean(tube, tube.end.x, 0, 0), 0.03);
+}
+
 TEST(SlowScenes, a_mat_is_twisted_by_its_ends) {
   const FinishedScene mat = finish("twisted_mat.toml");
   ASSERT_EQ(mat.summary.failure, "");
