@@ -44,7 +44,6 @@ bool expand_about_rest(Module& module) {
   const Energy& energy = *module.energy;
   if (energy.kind != Energy::Kind::density) return false;
   Module made = empty_module(energy, module.case_name);
-  if (made.stretches && energy.geometry != "solid") return false;  // the runtime knows s, not s - 1, of these
   made.displacement = true;
   RestAlgebra algebra(made);
   const Elaborated<int> parts = elaborate(energy, module.case_name, algebra);

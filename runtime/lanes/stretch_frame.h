@@ -17,23 +17,13 @@ struct StretchFrame {
   Real strain[Q];
 };
 
-// Where F = I + G and |G| is small: V holds the eigenvectors of F'F - I = G + G' + G'G, which keeps the digits of G,
-// and s - 1 = l/(1 + sqrt(1 + l)) for its eigenvalues l. Two steps as in svd3: an isolated eigenvector, then a rotation
-// of its complement.
-inline StretchFrame<3> frame_near_rest(const Vector& g0, const Vector& g1, const Vector& g2) {
-  const Symmetric e{2 * g0.x + dot(g0, g0),    g0.y + g1.x + dot(g0, g1), 2 * g1.y + dot(g1, g1),
-                    g0.z + g2.x + dot(g0, g2), g1.z + g2.y + dot(g1, g2), 2 * g2.z + dot(g2, g2)};
-  Real size = max(max(abs(e.a00), abs(e.a10)), max(abs(e.a11), abs(e.a20)));
-  size = max(max(max(abs(e.a21), abs(e.a22)), size), splat(kNegligible));
-  const Real scale = 1 / size;
-  const Symmetric n{scale * e.a00, scale * e.a10, scale * e.a11, scale * e.a20, scale * e.a21, scale * e.a22};
-  Vector v[3];
-  const Isolated isolated = isolated_eigenvector(n);
-  v[0] = isolated.v;
-  frame(v[0], v[1], v[2]);
-  // The rotation by b that takes the off-diagonal entry away: tan(2 b) = y/x.
-  const Vector n1 = n * v[1], n2 = n * v[2];
-  const Real x = dot(v[1], n1) - dot(v[2], n2), y = 2 * dot(v[1], n2);
+// The rotation by b that takes the off-diagonal entry of a symmetric 2x2 matrix away: tan(2 b) = y/x of its difference
+// of diagonal entries x and twice that entry, y. The larger eigenvalue belongs to (c, s).
+struct PlaneTurn {
+  Real c, s;
+};
+
+inline PlaneTurn plane_turn(Real x, Real y) {
   const Real hypotenuse = x * x + y * y;
   const Mask turned = less(splat(kNegligible), hypotenuse);
   const Real inverse = rsqrt(max(hypotenuse, splat(kNegligible)));
@@ -42,8 +32,29 @@ inline StretchFrame<3> frame_near_rest(const Vector& g0, const Vector& g1, const
   const Real inverse_larger = rsqrt(larger_squared);
   const Real larger = larger_squared * inverse_larger, smaller = 0.5 * sin_2b * inverse_larger;
   const Mask first = less_equal(splat(0), x);
-  const Real c = select(first, larger, smaller), s = copysign(select(first, smaller, larger), y);
-  const Vector v1 = c * v[1] + s * v[2], v2 = c * v[2] + (-s) * v[1];
+  return {select(first, larger, smaller), copysign(select(first, smaller, larger), y)};
+}
+
+// s - 1 of the eigenvalue l = s^2 - 1.
+inline Real strain_of(Real l) { return l / (1 + sqrt(1 + l)); }
+
+// Where F is the first columns of I + G and |G| is small: the right singular vectors are the eigenvectors of
+// F'F - I = G + G' + G'G, which keeps the digits of G. In space two steps as in svd3: an isolated eigenvector, then a
+// rotation of its complement.
+inline StretchFrame<3> frame_near_rest(const Vector (&g)[3]) {
+  const Symmetric e{2 * g[0].x + dot(g[0], g[0]),      g[0].y + g[1].x + dot(g[0], g[1]), 2 * g[1].y + dot(g[1], g[1]),
+                    g[0].z + g[2].x + dot(g[0], g[2]), g[1].z + g[2].y + dot(g[1], g[2]), 2 * g[2].z + dot(g[2], g[2])};
+  Real size = max(max(abs(e.a00), abs(e.a10)), max(abs(e.a11), abs(e.a20)));
+  size = max(max(max(abs(e.a21), abs(e.a22)), size), splat(kNegligible));
+  const Real scale = 1 / size;
+  const Symmetric n{scale * e.a00, scale * e.a10, scale * e.a11, scale * e.a20, scale * e.a21, scale * e.a22};
+  Vector v[3];
+  const Isolated isolated = isolated_eigenvector(n);
+  v[0] = isolated.v;
+  frame(v[0], v[1], v[2]);
+  const Vector n1 = n * v[1], n2 = n * v[2];
+  const PlaneTurn turn = plane_turn(dot(v[1], n1) - dot(v[2], n2), 2 * dot(v[1], n2));
+  const Vector v1 = turn.c * v[1] + turn.s * v[2], v2 = turn.c * v[2] + (-turn.s) * v[1];
   const Mask highest = isolated.highest;
   StretchFrame<3> out;
   out.svd.v[0] = select(highest, v[0], v1);
@@ -52,41 +63,82 @@ inline StretchFrame<3> frame_near_rest(const Vector& g0, const Vector& g1, const
 #pragma GCC unroll 3
   for (int i = 0; i < 3; ++i) {
     const Vector& w = out.svd.v[i];
-    const Real l = dot(w, e * w);
-    out.strain[i] = l / (1 + sqrt(1 + l));
+    out.strain[i] = strain_of(dot(w, e * w));
     out.svd.s[i] = 1 + out.strain[i];
-    const Vector image = w.x * g0 + w.y * g1 + w.z * g2;  // G v
-    out.svd.u[i] = (1 / out.svd.s[i]) * (w + image);
+    out.svd.u[i] = (1 / out.svd.s[i]) * (w + (w.x * g[0] + w.y * g[1] + w.z * g[2]));  // F v/s
   }
   return out;
 }
+
+inline StretchFrame<2> frame_near_rest(const Vector (&g)[2]) {
+  const Real e00 = 2 * g[0].x + dot(g[0], g[0]), e10 = g[0].y + g[1].x + dot(g[0], g[1]),
+             e11 = 2 * g[1].y + dot(g[1], g[1]);
+  const Real scale = 1 / max(max(abs(e00), abs(e10)), max(abs(e11), splat(kNegligible)));
+  const PlaneTurn turn = plane_turn(scale * (e00 - e11), 2 * scale * e10);
+  StretchFrame<2> out;
+  const Real v[2][2] = {{turn.c, turn.s}, {-turn.s, turn.c}};
+#pragma GCC unroll 2
+  for (int i = 0; i < 2; ++i) {
+    const Real a = v[i][0], b = v[i][1];
+    out.svd.v[i][0] = a;
+    out.svd.v[i][1] = b;
+    out.strain[i] = strain_of(a * a * e00 + 2 * (a * b) * e10 + b * b * e11);
+    out.svd.s[i] = 1 + out.strain[i];
+    out.svd.u[i] = (1 / out.svd.s[i]) * (Vector{a, b, splat(0)} + (a * g[0] + b * g[1]));
+  }
+  out.svd.u[2] = cross(out.svd.u[0], out.svd.u[1]);
+  return out;
+}
+
+inline StretchFrame<1> frame_near_rest(const Vector (&g)[1]) {
+  StretchFrame<1> out;
+  out.strain[0] = strain_of(2 * g[0].x + dot(g[0], g[0]));
+  out.svd.s[0] = 1 + out.strain[0];
+  out.svd.u[0] = (1 / out.svd.s[0]) * Vector{1 + g[0].x, g[0].y, g[0].z};
+  frame(out.svd.u[0], out.svd.u[1], out.svd.u[2]);
+  return out;
+}
+
+inline void choose(Mask near, const Svd3& far, Svd3& out) {
+  for (int i = 0; i < 3; ++i) out.v[i] = select(near, out.v[i], far.v[i]);
+}
+inline void choose(Mask near, const Svd2& far, Svd2& out) {
+  for (int i = 0; i < 4; ++i) out.v[i / 2][i % 2] = select(near, out.v[i / 2][i % 2], far.v[i / 2][i % 2]);
+}
+inline void choose(Mask, const Svd1&, Svd1&) {}
 
 // Of q: F, or G where `displacement` is set.
 template <int Q>
 inline StretchFrame<Q> stretch_frame(const Scalar* q, bool displacement) {
   StretchFrame<Q> out;
   Vector f[Q];
-  if constexpr (Q == 3) {
-    if (displacement) {
-      const Vector g0 = column_of(q, 0), g1 = column_of(q, 1), g2 = column_of(q, 2);
-      const Mask near = less(dot(g0, g0) + dot(g1, g1) + dot(g2, g2), splat(kNearRest));
-      const unsigned lanes = bits(near) & kAllLanes;
-      if (lanes != 0) out = frame_near_rest(g0, g1, g2);
-      if (lanes == kAllLanes) return out;
-      deformation<3>(q, true, f);
-      const Svd3 far = decompose<3>(f);
-      for (int i = 0; i < 3; ++i) {
-        out.svd.u[i] = lanes == 0 ? far.u[i] : select(near, out.svd.u[i], far.u[i]);
-        out.svd.v[i] = lanes == 0 ? far.v[i] : select(near, out.svd.v[i], far.v[i]);
-        out.svd.s[i] = lanes == 0 ? far.s[i] : select(near, out.svd.s[i], far.s[i]);
-        out.strain[i] = lanes == 0 ? far.s[i] - 1 : select(near, out.strain[i], far.s[i] - 1);
-      }
-      return out;
+  Mask near = less(splat(1), splat(0));
+  unsigned lanes = 0;
+  if (displacement) {
+    Vector g[Q];
+    Real squares = splat(0);
+    for (int c = 0; c < Q; ++c) {
+      g[c] = column_of(q, c);
+      squares += dot(g[c], g[c]);
     }
+    near = less(squares, splat(kNearRest));
+    lanes = bits(near) & kAllLanes;
+    if (lanes != 0) out = frame_near_rest(g);
+    if (lanes == kAllLanes) return out;
   }
   deformation<Q>(q, displacement, f);
-  out.svd = decompose<Q>(f);
-  for (int i = 0; i < Q; ++i) out.strain[i] = out.svd.s[i] - 1;
+  const Svd<Q> far = decompose<Q>(f);
+  if (lanes == 0) {
+    out.svd = far;
+    for (int i = 0; i < Q; ++i) out.strain[i] = far.s[i] - 1;
+    return out;
+  }
+  for (int i = 0; i < 3; ++i) out.svd.u[i] = select(near, out.svd.u[i], far.u[i]);
+  choose(near, far, out.svd);
+  for (int i = 0; i < Q; ++i) {
+    out.svd.s[i] = select(near, out.svd.s[i], far.s[i]);
+    out.strain[i] = select(near, out.strain[i], far.s[i] - 1);
+  }
   return out;
 }
 

@@ -65,6 +65,7 @@ struct Case {
 };
 const std::vector<Case> kCases = {
     {"st_venant_kirchhoff_membrane", {Element::tri3, Element::quad9}},
+    {"ogden_membrane", {Element::tri3, Element::quad4}},
     {"neo_hookean_membrane", {Element::tri3, Element::tri6, Element::quad4}},
     {"baraff_witkin", {Element::tri3}},
     {"orthotropic_membrane", {Element::tri3, Element::quad4}},
