@@ -12,6 +12,7 @@
 #include "runtime/solver/stopwatch.h"
 #include "scenes/build_affine.h"
 #include "scenes/build_contact.h"
+#include "scenes/held_check.h"
 #include "scenes/laws.h"
 #include "scenes/object_laws.h"
 #include "scenes/start_check.h"
@@ -35,7 +36,10 @@ struct WorldLaws {
 WorldLaws world_laws(const Scene& scene, Laws& laws, std::vector<std::string>& skipped) {
   const Place whole{scene.file, 0, 0};
   WorldLaws out;
-  out.inertia = &laws.get("inertia", whole);
+  if (scene.time.quasi_static())
+    skipped.push_back("inertia: a quasi-static scene has none");
+  else
+    out.inertia = &laws.get("inertia", whole);
   if (vector(scene.gravity).isZero(0))
     skipped.push_back("gravity: it is zero in this scene, no kernel loaded");
   else
@@ -81,12 +85,15 @@ void add_world(const Scene& scene, const WorldLaws& world, const UsedKernels& ke
   const Eigen::Matrix3Xd& X = out.start.x;
   const std::vector<int> points = heavy_points(out.mass);
   if (world.orthogonality != nullptr) add_affine_potentials(scene, kernels.get(*world.orthogonality), out);
-  out.system->add(Potential::on_stencils("inertia", kernels.get(*world.inertia), points, X, {},
-                                         {{"mass", masses_of(out.mass, points)}}));
-  if (world.gravity != nullptr)
-    out.system->add(Potential::on_stencils("gravity", kernels.get(*world.gravity), points, X,
-                                           {{"g", {scene.gravity.begin(), scene.gravity.end()}}},
+  if (world.inertia != nullptr)
+    out.system->add(Potential::on_stencils("inertia", kernels.get(*world.inertia), points, X, {},
                                            {{"mass", masses_of(out.mass, points)}}));
+  if (world.gravity != nullptr) {
+    const int index = out.system->add(Potential::on_stencils("gravity", kernels.get(*world.gravity), points, X,
+                                                             {{"g", {scene.gravity.begin(), scene.gravity.end()}}},
+                                                             {{"mass", masses_of(out.mass, points)}}));
+    add_load(scene, index, "g", {scene.gravity.begin(), scene.gravity.end()}, out);
+  }
   add_contact(scene, world.contact, kernels, out);
 }
 
@@ -103,6 +110,8 @@ double tolerance(const Scene& scene) {
   return out;
 }
 
+constexpr double least_part = 1e-3;  // of dt: the shortest step of load, unless the scene says which
+
 StepOptions step_options(const Scene& scene) {
   StepOptions out;
   out.dt = scene.time.dt;
@@ -118,6 +127,12 @@ StepOptions step_options(const Scene& scene) {
   out.project_on_demand = scene.solver.projection == "progressive";
   out.accept_unconverged = scene.solver.accept_unconverged;
   return out;
+}
+
+std::optional<StepLimits> step_limits(const Scene& scene) {
+  const TimeSettings& time = scene.time;
+  if (!time.quasi_static() && !time.min_dt) return std::nullopt;
+  return StepLimits{.largest = time.dt, .smallest = time.min_dt.value_or(least_part * time.dt), .interval = time.dt};
 }
 
 void add_script(const BodyScript& script, int first_vertex, BuiltScene& out) {
@@ -188,6 +203,16 @@ std::vector<Probe> probes_of(const Scene& scene, const BuiltScene& built) {
 
 }  // namespace
 
+void add_load(const Scene& scene, int potential, const std::string& param, std::vector<double> full, BuiltScene& out) {
+  if (scene.time.quasi_static()) out.loads.push_back({potential, param, std::move(full)});
+}
+
+TimeStepper stepper_of(BuiltScene& built) {
+  TimeStepper stepper(*built.system, built.mass, built.contacts.get(), built.step, built.script);
+  if (!built.loads.empty()) stepper.grow_loads(built.loads, static_cast<double>(built.steps) * built.step.dt);
+  return stepper;
+}
+
 BuiltScene build_scene(const Scene& scene, const Catalogue& catalogue, const KernelSource& kernel_source,
                        const FaultReport& report) {
   BuiltScene out;
@@ -223,14 +248,16 @@ BuiltScene build_scene(const Scene& scene, const Catalogue& catalogue, const Ker
   }
   {
     Stopwatch watch(out.seconds.setup);
-    for (size_t i = 0; i < used.size(); ++i) add_object(scene.objects[i], used[i], kernels, i, out);
+    for (size_t i = 0; i < used.size(); ++i) add_object(scene, scene.objects[i], used[i], kernels, i, out);
     add_world(scene, world, kernels, out);
     if (out.surfaces != nullptr) check_surface_start(scene, out, report);
   }
   out.step = step_options(scene);
+  out.limits = step_limits(scene);
   // An end that is a multiple of dt up to rounding takes no step more.
   out.steps = scene.time.steps ? *scene.time.steps
                                : std::max(1L, static_cast<long>(std::ceil(*scene.time.end / scene.time.dt - 1e-6)));
+  if (scene.time.quasi_static()) check_held(scene, out);
   return out;
 }
 

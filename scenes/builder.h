@@ -14,6 +14,7 @@
 #include "runtime/output/vtu.h"
 #include "runtime/potential.h"
 #include "runtime/script.h"
+#include "runtime/solver/step_control.h"
 #include "runtime/solver/time_step.h"
 #include "runtime/system.h"
 #include "scenes/body.h"
@@ -54,7 +55,9 @@ struct BuiltScene {
   State start;
   std::vector<Probe> probes;
   StepOptions step;
-  long steps = 0;
+  long steps = 0;                    // of step.dt
+  std::optional<StepLimits> limits;  // absent: all steps are of step.dt
+  std::vector<Load> loads;           // that grow from 0 at the start to what they are at the end; none: none grows
   std::vector<std::string> skipped;  // what was left out, "part: reason"
   // Faults of energies that the scene names by file, as check_energy tells them; those of the catalogue are checked by
   // its tests.
@@ -64,6 +67,12 @@ struct BuiltScene {
 
 // Given a mesh of what intersects at the start, before the error that says so.
 using FaultReport = std::function<void(const Frame& faults)>;
+
+// Notes that a potential is a load, where loads grow. `full`: of the param that it is in proportion to.
+void add_load(const Scene& scene, int potential, const std::string& param, std::vector<double> full, BuiltScene& out);
+
+// A stepper of the scene, its loads included.
+TimeStepper stepper_of(BuiltScene& built);
 
 // Throws SourceError at the scene's line, or in an energy file, for everything that does not fit together; all of it
 // that can be found without compiling is found before a kernel is asked for. `scene` need not outlive the result.

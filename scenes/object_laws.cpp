@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <filesystem>
 
 #include "runtime/error.h"
 #include "runtime/mesh/mesh_stencils.h"
@@ -108,6 +109,12 @@ Potential object_potential(const UsedLaw& law, const Kernel& kernel, const Body&
                                 rest_data(energy, stencils, built));
 }
 
+// A law in a folder named loads, which is in proportion to its first param.
+bool is_load(const Energy& energy) {
+  return std::filesystem::path(energy.file).parent_path().filename() == "loads" &&
+         !energy.with_role(Role::param).empty();
+}
+
 }  // namespace
 
 std::vector<UsedLaw> object_laws(const SceneObject& object, Laws& laws) {
@@ -141,10 +148,14 @@ void check_geometry(const SceneObject& object, const std::vector<UsedLaw>& laws,
   }
 }
 
-void add_object(const SceneObject& object, const std::vector<UsedLaw>& laws, const UsedKernels& kernels, size_t body,
-                BuiltScene& out) {
+void add_object(const Scene& scene, const SceneObject& object, const std::vector<UsedLaw>& laws,
+                const UsedKernels& kernels, size_t body, BuiltScene& out) {
   for (size_t i = 0; i < laws.size(); ++i) try {
-      out.system->add(object_potential(laws[i], kernels.get(*laws[i].energy), out.bodies[body], out));
+      const Energy& energy = *laws[i].energy;
+      const int index = out.system->add(object_potential(laws[i], kernels.get(energy), out.bodies[body], out));
+      if (!is_load(energy)) continue;
+      const std::string& param = energy.with_role(Role::param).front()->name;
+      add_load(scene, index, param, laws[i].params.at(param), out);
     } catch (const InputError& bad) {
       throw SourceError(object.energies[i].place, fmt::format("object '{}': {}", object.name, bad.what()));
     }

@@ -25,7 +25,7 @@ std::vector<UsedLaw> object_laws(const SceneObject& object, Laws& laws);
 void check_geometry(const SceneObject& object, const std::vector<UsedLaw>& laws, const Body& body);
 
 // Adds the potentials of object `body` to a scene whose bodies, system, masses and start are known.
-void add_object(const SceneObject& object, const std::vector<UsedLaw>& laws, const UsedKernels& kernels, size_t body,
-                BuiltScene& out);
+void add_object(const Scene& scene, const SceneObject& object, const std::vector<UsedLaw>& laws,
+                const UsedKernels& kernels, size_t body, BuiltScene& out);
 
 }  // namespace ergon

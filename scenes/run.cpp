@@ -68,6 +68,8 @@ ReportRecord report_of(const StepRecord& record, const BuiltScene& built, const 
               {"friction_change", record.friction_change},
               {"barrier_stiffness", record.barrier_stiffness},
               {"energy_added", record.energy_added}};
+  if (built.limits) out.more.emplace_back("refused", record.refused);
+  if (!built.loads.empty()) out.more.emplace_back("load_factor", record.load_factor);
   return out;
 }
 
@@ -127,7 +129,7 @@ std::string failure_of(const StepRecord& record, const State& state, const Built
   if (!record.accepted) {
     const std::string where =
         record.worst_vertex < 0 ? "" : fmt::format(" ({})", vertex_text(built, record.worst_vertex));
-    return fmt::format("step {} (to {:.6g} s) failed: {}{}", state.step + 1, state.time + built.step.dt, record.reason,
+    return fmt::format("step {} (to {:.6g} s) failed: {}{}", state.step + 1, state.time + record.dt, record.reason,
                        where);
   }
   if (!verify || built.surfaces == nullptr) return "";
@@ -135,6 +137,12 @@ std::string failure_of(const StepRecord& record, const State& state, const Built
   if (faults.none()) return "";
   return fmt::format("after step {} ({:.6g} s) surfaces intersect: {}", state.step, state.time,
                      to_text(faults, built, state.x));
+}
+
+// Whether the state is at the end of the run. Steps that adapt end at all multiples of dt.
+bool is_done(const State& state, const BuiltScene& built) {
+  if (!built.limits) return state.step >= built.steps;
+  return std::lround(state.time / built.step.dt) >= built.steps && state.time >= built.steps * built.step.dt;
 }
 
 long peak_memory() {
@@ -166,15 +174,17 @@ RunSummary run_scene(const Scene& scene, BuiltScene& built, const RunOptions& op
     output = std::make_unique<Output>(scene, built, options.folder);
     output->state(state);
   }
-  TimeStepper stepper(*built.system, built.mass, built.contacts.get(), built.step, built.script);
+  TimeStepper stepper = stepper_of(built);
+  std::optional<StepControl> control;
+  if (built.limits) control.emplace(stepper, *built.limits);
   RunSummary summary = summary_of_start(scene, built, stepper.energies(state).total);
-  while (state.step < built.steps && summary.failure.empty()) {
+  while (!is_done(state, built) && summary.failure.empty()) {
     if (options.stop && options.stop()) {
       summary.stopped = true;
       break;
     }
     const State before = options.verify ? state : State{};
-    const StepRecord record = stepper.step(state);
+    const StepRecord record = control ? control->step(state) : stepper.step(state);
     add_step(summary, record);
     summary.failure = failure_of(record, state, built, options.verify);
     if (options.verify && record.accepted && !summary.failure.empty()) state = before;

@@ -4,41 +4,14 @@
 #include <cmath>
 
 #include "runtime/mesh/quadrature.h"
-#include "runtime/solver/integrator.h"
 #include "scenes/contact_keys.h"
 #include "scenes/shape_keys.h"
+#include "scenes/time_keys.h"
 
 namespace ergon {
 namespace {
 
 using namespace key_ranges;
-
-Section<TimeSettings> time_section() {
-  using T = TimeSettings;
-  Section<T> out{"[time]", "How long to simulate.", {}, {}, {}};
-  out.keys = {
-      number_key("dt", &T::dt, "s", positive, Need::required, "length of a time step"),
-      number_key("end", &T::end, "s", positive, Need::optional, "simulated time", "give `end` or `steps`"),
-      integer_key("steps", &T::steps, from_1, Need::optional, "number of time steps", "give `end` or `steps`"),
-      choice_key(
-          "integrator", &T::integrator, integrator_names(),
-          "of first order implicit_euler, which damps; of second bdf2 (one solve per step), sdirk2 and tr_bdf2 (two), "
-          "which damp little, newmark, generalised_alpha and midpoint, which damp next to nothing; midpoint and "
-          "generalised_alpha go on beyond the state they solve for, which contact may forbid: the step then fails"),
-  };
-  out.check = [](const std::string&, const T& time) {
-    if (time.end && time.steps)
-      throw SourceError(time.at("steps"), "[time] has both 'end' and 'steps'; keep one of them");
-    if (!time.end && !time.steps)
-      throw SourceError(time.place, "[time] lacks 'end' (simulated time, in s) or 'steps' (number of time steps)");
-    constexpr double most = 1e9;
-    if (time.end && *time.end / time.dt > most)
-      throw SourceError(time.at("end"),
-                        fmt::format("{} s in steps of {} s are {:.3g} steps; at most {:.3g} are counted", *time.end,
-                                    time.dt, *time.end / time.dt, most));
-  };
-  return out;
-}
 
 Section<SolverSettings> solver_section() {
   using T = SolverSettings;

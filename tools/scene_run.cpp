@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <ostream>
 
 #include "runtime/lanes/lanes.h"
@@ -63,8 +64,8 @@ RunSummary run_scene_file(const SceneRun& options) {
   for (const std::string& warning : built.warnings) *options.progress << "warning  " << warning << '\n';
   *options.progress << start_line(scene, built) << std::flush;
   Progress progress(*options.progress, isatty(STDOUT_FILENO) != 0, static_cast<int>(built.steps));
-  run.progress = [&progress](const StepRecord& record, long) {
-    progress.update(static_cast<int>(record.step), record.time,
+  run.progress = [&progress, &built](const StepRecord& record, long) {
+    progress.update(static_cast<int>(std::lround(record.time / built.step.dt)), record.time,
                     fmt::format("{} Newton{}", record.newton_iterations,
                                 record.contacts == 0 ? "" : fmt::format(", {} contacts", record.contacts)));
   };

@@ -79,6 +79,10 @@ Integrator generalised_alpha(double) {
           .end_a = {{}, {0, 0, a0}, {0, 0, a1}}};
 }
 
+Integrator quasi_static(double) {
+  return {.order = 1, .has_inertia = false, .stages = {first_order(1, 1, {0, 1}, {0, 0})}};
+}
+
 using Maker = Integrator (*)(double ratio);
 const std::pair<const char*, Maker> makers[] = {{"implicit_euler", implicit_euler},
                                                 {"bdf2", bdf2},
@@ -86,7 +90,8 @@ const std::pair<const char*, Maker> makers[] = {{"implicit_euler", implicit_eule
                                                 {"tr_bdf2", tr_bdf2},
                                                 {"midpoint", midpoint},
                                                 {"newmark", newmark},
-                                                {"generalised_alpha", generalised_alpha}};
+                                                {"generalised_alpha", generalised_alpha},
+                                                {"quasi_static", quasi_static}};
 
 template <class Term>
 Eigen::Matrix3Xd sum_of(const Combination& weights, const std::vector<Moment>& moments, Term term) {

@@ -38,6 +38,7 @@ struct Integrator {
   int order = 1;
   bool two_step = false;            // its first step is made by sdirk2
   bool needs_acceleration = false;  // at the start of a step
+  bool has_inertia = true;          // false: each step ends in an equilibrium
   std::vector<Stage> stages = {};
   // Empty: the step ends with the last stage. A combination that goes on beyond it may lead through what contact keeps
   // apart; the step then fails.
@@ -49,7 +50,8 @@ struct Integrator {
 // 14(6), of two stages with gamma = 1 - sqrt(1/2); tr_bdf2: Bank et al. 1985, Transient Simulation of Silicon Devices
 // and Circuits, with gamma = 2 - sqrt(2); midpoint; newmark: Newmark 1959 with beta = 1/4, gamma = 1/2 (the trapezoidal
 // rule); generalised_alpha: Chung, Hulbert 1993, A Time Integration Algorithm for Structural Dynamics With Improved
-// Numerical Dissipation, J. Appl. Mech. 60(2), with a spectral radius of 0.8 at infinity.
+// Numerical Dissipation, J. Appl. Mech. 60(2), with a spectral radius of 0.8 at infinity. quasi_static: equilibria that
+// follow a load; velocities, of friction and damping, are displacements of a step over its dt.
 std::vector<std::string> integrator_names();
 
 // ratio: dt of this step over that of the last one, for two-step methods. Throws InputError naming the nearest.

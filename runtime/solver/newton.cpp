@@ -4,18 +4,20 @@
 
 #include <cmath>
 
+#include "runtime/solver/largest.h"
 #include "runtime/solver/stopwatch.h"
 
 namespace ergon {
 
 namespace {
 
-constexpr double largest_gap_change = 0.1;  // of the last Newton step, as a fraction of each active gap
-constexpr double model_error = 0.05;        // of the change of energy that a Newton step predicts
-constexpr double same_factor_margin = 0.5;  // of the tolerance, for a step solved with the factor of the one before
-constexpr double near_limit = 1e3;          // tolerances: a step below this may be the last but one
-constexpr double rounding_gradients = 4;    // a gradient of so many times its rounding counts as zero
-constexpr double first_shift = 1e-8;        // of the mean diagonal
+constexpr double largest_gap_change = 0.1;   // of the last Newton step, as a fraction of each active gap
+constexpr double model_error = 0.05;         // of the change of energy that a Newton step predicts
+constexpr double same_factor_margin = 0.5;   // of the tolerance, for a step solved with the factor of the one before
+constexpr double near_limit = 1e3;           // tolerances: a step below this may be the last but one
+constexpr double rounding_gradients = 4;     // a gradient of so many times its rounding counts as zero
+constexpr double first_shift = 1e-8;         // of the mean diagonal
+constexpr double neutral_curvature = 1e-13;  // of the mean diagonal: what rounding makes of a factor's zero pivots
 constexpr double shift_growth = 10;
 constexpr int max_shifts = 20;
 constexpr double first_blend = 1.0 / 16;  // of projected Hessians, where those as they are do not serve
@@ -24,32 +26,6 @@ constexpr double blend_decay = 2;
 constexpr double bold_fraction = 0.1;  // of a Newton step: less says that its Hessian was too soft
 
 double lowered(double blend) { return blend / blend_decay < first_blend ? 0 : blend / blend_decay; }
-
-struct Largest {
-  double value = 0;
-  int vertex = -1;
-};
-
-Largest largest_free_component(const System& system, const Eigen::Matrix3Xd& field) {
-  Largest largest;
-  for (int v = 0; v < system.vertices(); ++v) {
-    if (system.block_of(v) < 0) continue;
-    const double size = field.col(v).cwiseAbs().maxCoeff();
-    if (!(size <= largest.value)) largest = {size, v};
-  }
-  return largest;
-}
-
-// The same over all vertices that move.
-Largest largest_motion(const System& system, const Eigen::Matrix3Xd& direction) {
-  Largest largest;
-  for (int v = 0; v < system.vertices(); ++v) {
-    if (!system.moves(v)) continue;
-    const double size = direction.col(v).cwiseAbs().maxCoeff();
-    if (!(size <= largest.value)) largest = {size, v};
-  }
-  return largest;
-}
 
 // Any component of the next Newton step p = -H^-1 g is at most this, in m, because H >= diag(curvature):
 // |p_i| <= sqrt(H^-1_ii) sqrt(g' H^-1 g).
@@ -241,6 +217,11 @@ void Newton::evaluate_gradient(System& system, const Eigen::Matrix3Xd& x, Newton
   const Stopwatch watch(result.seconds.evaluate);
   system.gradient(x, gradient_);
   result.residual = largest_free_component(system, gradient_).value;
+}
+
+bool Newton::is_minimum(System& system, const Eigen::Matrix3Xd& x) {
+  system.hessian(x, Projection::none, gradient_, matrix_);
+  return !solver_.factor(matrix_, neutral_curvature * mean_diagonal(matrix_));
 }
 
 // The gradient alone may show that the next step is below the tolerance.

@@ -64,7 +64,7 @@ struct NewtonResult {
   int follow_iterations = 0;    // that moved what is prescribed
   double residual = 0;          // N, largest component of the gradient at x over free vertices
   double step_speed = 0;        // m/s, largest component of the last Newton step over dt, or the bound that replaced it
-  double first_step_speed = 0;  // m/s, of the first Newton step
+  double first_step_speed = 0;  // m/s, of the first Newton step, prescribed motion included
   double smallest_fraction = 1;  // of a Newton step that was taken
   int halvings = 0;
   int shifts = 0;  // factorisations repeated with a larger diagonal
@@ -84,6 +84,10 @@ class Newton {
   // Moves x (3 x vertices, m) to a minimum. `contact` may be null. Whatever happens, x is a state inside the domain
   // with an energy not above the first; throws InputError only when the first x is outside the domain or not finite.
   NewtonResult minimise(System& system, Eigen::Matrix3Xd& x, const NewtonOptions& options, Contact* contact = nullptr);
+
+  // Whether the Hessian at x, as it is, has no negative eigenvalue that rounding does not explain. Contact's active set
+  // must be that of x.
+  bool is_minimum(System& system, const Eigen::Matrix3Xd& x);
 
   const LinearSolver& linear_solver() const { return solver_; }
   const BlockMatrix& matrix() const { return matrix_; }

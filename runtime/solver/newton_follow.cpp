@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "runtime/solver/largest.h"
 #include "runtime/solver/newton.h"
 #include "runtime/solver/stopwatch.h"
 
@@ -88,6 +89,7 @@ bool Newton::follow(System& system, Eigen::Matrix3Xd& x, const NewtonOptions& op
     find_direction(system, x, options, result);
     if (!result.reason.empty()) return false;
     direction_ += way;
+    if (result.iterations == 0) result.first_step_speed = largest_motion(system, direction_).value / options.dt;
 
     double fraction = 1;
     if (contact) {

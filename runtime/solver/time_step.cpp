@@ -4,47 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 
 #include "runtime/error.h"
+#include "runtime/solver/lags.h"
 #include "runtime/solver/stopwatch.h"
 
 namespace ergon {
 
 namespace {
-
-bool has_lag(const ErgonKernel& kernel, std::string_view name) {
-  return std::any_of(kernel.inputs, kernel.inputs + kernel.n_inputs,
-                     [name](const ErgonInput& input) { return input.role == ERGON_LAG && name == input.name; });
-}
-
-// The columns of one point of every stencil, one after the other.
-std::vector<double> gather(const Potential& potential, int point, const Eigen::Matrix3Xd& field) {
-  const auto points = static_cast<size_t>(potential.points_per_stencil());
-  std::vector<double> values;
-  values.reserve(3 * static_cast<size_t>(potential.stencil_count()));
-  for (size_t i = static_cast<size_t>(point); i < potential.stencils().size(); i += points) {
-    const auto column = field.col(potential.stencils()[i]);
-    values.insert(values.end(), column.begin(), column.end());
-  }
-  return values;
-}
-
-// The lag of each point whose name is the point's with this ending.
-void set_vector_lags(Potential& potential, const std::string& ending, const Eigen::Matrix3Xd& field) {
-  for (int point = 0; point < potential.points_per_stencil(); ++point) {
-    const std::string lag = potential.kernel().point_names[point] + ending;
-    if (has_lag(potential.kernel(), lag)) potential.set_lag(lag, gather(potential, point, field));
-  }
-}
-
-bool has_vector_lag(const Potential& potential, const std::string& ending) {
-  if (potential.kernel().density || !potential.kernel().point_names) return false;
-  for (int point = 0; point < potential.points_per_stencil(); ++point) {
-    if (has_lag(potential.kernel(), potential.kernel().point_names[point] + ending)) return true;
-  }
-  return false;
-}
 
 void add(NewtonSeconds& sum, const NewtonSeconds& part) {
   sum.evaluate += part.evaluate;
@@ -80,9 +47,11 @@ StepRecord TimeStepper::step(State& state) {
 
     const Integrator integrator = integrator_for(state);
     std::vector<Moment> moments = known_moments(state, integrator);
+    const bool was_stable = integrator.has_inertia || is_stable(state);
     for (const Stage& stage : integrator.stages) {
       Eigen::Matrix3Xd x = moments.back().x;
       result = solve_stage(stage_of(state, stage, moments), state.v, x, record);
+      if (!integrator.has_inertia) judge_path(state, x, was_stable, result);
       record.accepted = result.converged || (options_.accept_unconverged && result.iterations > 0);
       if (!record.accepted) break;
       moments.push_back(moment_of(state, stage, moments, x));
@@ -196,6 +165,7 @@ bool TimeStepper::finish(const Integrator& integrator, std::vector<Moment>& mome
 }
 
 void TimeStepper::set_lags(const Solve& stage) {
+  if (load_end_ > 0) set_loads(load_factor(stage.end));
   lagged_dt_.resize(static_cast<size_t>(system_->potential_count()), 0);
   for (int i = 0; i < system_->potential_count(); ++i) {
     Potential& potential = system_->potential(i);
@@ -225,7 +195,7 @@ NewtonResult TimeStepper::solve(const Solve& stage, Eigen::Matrix3Xd& x, StepRec
   newton.max_iterations = options_.max_iterations;
   newton.projection = options_.projection;
   newton.on_demand = options_.project_on_demand;
-  newton.curvature = resisting_mass_ / (stage.dt * stage.dt);
+  if (integrator_named(options_.integrator).has_inertia) newton.curvature = resisting_mass_ / (stage.dt * stage.dt);
   if (!script_.empty()) {
     goal_ = x;
     script_.place(stage.end, goal_);
@@ -282,67 +252,6 @@ void TimeStepper::advance(State& state, const Moment& end) const {
   system_->carriers().place(state.x);  // free of the rounding that the iterations added up
   state.step += 1;
   state.time += options_.dt;
-}
-
-void TimeStepper::report(const State& state, const NewtonResult& result, StepRecord& record) {
-  record.step = state.step;
-  record.time = state.time;
-  record.converged = result.converged;
-  record.reason = result.reason;
-  record.worst_vertex = result.worst_vertex;
-  record.residual = result.residual;
-  record.step_speed = result.step_speed;
-  record.skipped = skipped_parts();
-  record.energy = record.accepted ? energies_of(result.evaluation, state.v) : energies(state);
-  if (contact_) {
-    const ContactStatus status = contact_->status(state.x);
-    record.contacts = status.active;
-    record.smallest_gap = status.smallest_gap;
-    record.barrier_stiffness = status.stiffness;
-    record.energy_added = status.energy_added;
-  }
-}
-
-// Lags and contact of a state that nothing was stepped to.
-void TimeStepper::prepare_at(const State& state) {
-  set_lags({state.x, options_.dt, state.x, options_.dt, state.time});
-  if (!contact_) return;
-  contact_->begin_step(state.x, state.v, options_.dt);
-  contact_->lag_friction(state.x, state.x, options_.dt);
-  contact_->set_active(state.x);
-}
-
-Energies TimeStepper::energies(const State& state) {
-  prepare_at(state);
-  return energies_of(system_->value(state.x), state.v);
-}
-
-Energies TimeStepper::energies_of(const Evaluation& evaluation, const Eigen::Matrix3Xd& v) const {
-  Energies energies;
-  for (int i = 0; i < system_->potential_count(); ++i) {
-    const Potential& potential = system_->potential(i);
-    if (has_lag(potential.kernel(), "dt")) continue;
-    const double value = evaluation.by_potential[static_cast<size_t>(i)];
-    energies.total += value;
-    const auto same = std::find_if(energies.stored.begin(), energies.stored.end(),
-                                   [&](const auto& entry) { return entry.first == potential.name(); });
-    if (same != energies.stored.end()) {
-      same->second += value;
-    } else {
-      energies.stored.emplace_back(potential.name(), value);
-    }
-  }
-  for (int i = 0; i < mass_.size(); ++i) energies.kinetic += mass_[i] / 2 * v.col(i).squaredNorm();
-  energies.total += energies.kinetic;
-  return energies;
-}
-
-std::vector<std::string> TimeStepper::skipped_parts() const {
-  std::vector<std::string> skipped = system_->skipped();
-  const std::vector<std::string> more =
-      contact_ ? contact_->skipped() : std::vector<std::string>{"contact: nothing in the scene may touch"};
-  skipped.insert(skipped.end(), more.begin(), more.end());
-  return skipped;
 }
 
 }  // namespace ergon

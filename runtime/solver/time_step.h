@@ -50,6 +50,13 @@ struct StepOptions {
   bool accept_unconverged = false;  // go on from the best state found; the record still says so
 };
 
+// A potential of a load, and the values of the param that is in proportion to it.
+struct Load {
+  int potential = 0;
+  std::string param;
+  std::vector<double> full;
+};
+
 // J
 struct Energies {
   std::vector<std::pair<std::string, double>> stored;  // by potential, in order of addition; equal names are added up
@@ -84,6 +91,8 @@ struct StepRecord {
   double smallest_gap = std::numeric_limits<double>::infinity();  // m
   double barrier_stiffness = 0;                                   // largest
   double energy_added = 0;                                        // J, by changes of barrier stiffness
+  double load_factor = 1;                                         // of the state after the step
+  int refused = 0;                                                // longer steps that were tried before
   Energies energy;
   std::optional<ContactForces> forces;  // at the end of the step, friction as the last solve had it
   StepSeconds seconds;
@@ -98,6 +107,10 @@ class TimeStepper {
   TimeStepper(System& system, Eigen::VectorXd mass, Contact* contact, StepOptions options, Script script = {});
 
   StepRecord step(State& state);
+
+  // Loads grow in proportion to time, from 0 to `full` at `end` (s), and then stay.
+  void grow_loads(std::vector<Load> loads, double end);
+  double load_factor(double time) const;
 
   // Of a state, not only of one that was stepped to.
   Energies energies(const State& state);
@@ -122,6 +135,9 @@ class TimeStepper {
   NewtonResult solve_stage(const Solve& stage, const Eigen::Matrix3Xd& v, Eigen::Matrix3Xd& x, StepRecord& record);
   bool finish(const Integrator& integrator, std::vector<Moment>& moments, NewtonResult& result);
   void prepare_at(const State& state);
+  void set_loads(double factor);
+  bool is_stable(const State& state);
+  void judge_path(const State& state, const Eigen::Matrix3Xd& x, bool was_stable, NewtonResult& result);
   Eigen::Matrix3Xd free_acceleration(const State& state);
   void set_lags(const Solve& stage);
   void begin_contact(const Solve& stage, const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& v, StepRecord& record);
@@ -138,7 +154,10 @@ class TimeStepper {
   Contact* contact_;
   StepOptions options_;
   Script script_;
-  Eigen::Matrix3Xd goal_;  // m, of scripted vertices at the end of the step
+  std::vector<Load> loads_;
+  double load_end_ = 0;                            // s; 0: loads do not change
+  std::optional<std::pair<double, bool>> stable_;  // time of the state that stability was last found for, and it
+  Eigen::Matrix3Xd goal_;                          // m, of scripted vertices at the end of the step
   Newton newton_;
   std::vector<double> lagged_dt_;  // last dt given to each potential, so that an unchanged one stays untouched
 };

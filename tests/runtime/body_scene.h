@@ -19,7 +19,7 @@ struct BodyScene {
   Eigen::Vector3d g;
 
   BodyScene(const Eigen::Matrix3Xd& x, const Eigen::VectorXd& masses, const Eigen::Vector3d& gravity,
-            const std::vector<char>& fixed = {})
+            const std::vector<char>& fixed = {}, bool inert = true)
       : mass(masses), system(static_cast<int>(x.cols())), g(gravity) {
     state.x = x;
     state.v.setZero(3, x.cols());
@@ -27,7 +27,7 @@ struct BodyScene {
     std::vector<int> points(static_cast<size_t>(x.cols()));
     std::iota(points.begin(), points.end(), 0);
     const std::vector<double> m(masses.begin(), masses.end());
-    system.add(Potential::on_stencils("inertia", body_kernels::inertia(), points, x, {}, {{"mass", m}}));
+    if (inert) system.add(Potential::on_stencils("inertia", body_kernels::inertia(), points, x, {}, {{"mass", m}}));
     system.add(Potential::on_stencils("gravity", body_kernels::gravity(), points, x, {{"g", {g[0], g[1], g[2]}}},
                                       {{"mass", m}}));
   }
