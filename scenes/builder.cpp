@@ -102,11 +102,15 @@ void add_world(const Scene& scene, const WorldLaws& world, const UsedKernels& ke
 // step is (excess + (1 - w)^2)/(2*(1 - w))*epsv, at least sqrt(excess)*epsv.
 constexpr double friction_tolerance = 0.05;
 
+constexpr double newton_part = 0.01;  // of the tolerance of a step
+
 double tolerance(const Scene& scene) {
   double out = scene.solver.tolerance;
   for (const SceneGround& ground : scene.grounds)
     if (ground.mu > 0) out = std::min(out, friction_tolerance * ground.epsv);
   if (scene.contact && has_friction(*scene.contact)) out = std::min(out, friction_tolerance * scene.contact->epsv);
+  // Newton's method is to add little to the error that is tolerated.
+  if (scene.time.tolerance) out = std::min(out, newton_part * *scene.time.tolerance / scene.time.dt);
   return out;
 }
 
@@ -129,10 +133,14 @@ StepOptions step_options(const Scene& scene) {
   return out;
 }
 
-std::optional<StepLimits> step_limits(const Scene& scene) {
+std::optional<StepLimits> step_limits(const Scene& scene, long steps) {
   const TimeSettings& time = scene.time;
-  if (!time.quasi_static() && !time.min_dt) return std::nullopt;
-  return StepLimits{.largest = time.dt, .smallest = time.min_dt.value_or(least_part * time.dt), .interval = time.dt};
+  if (!time.quasi_static() && !time.min_dt && !time.tolerance) return std::nullopt;
+  StepLimits out{.largest = time.dt, .smallest = time.min_dt.value_or(least_part * time.dt), .interval = time.dt};
+  if (scene.output.frame_interval > 0) out.interval = scene.output.frame_interval;
+  if (time.tolerance) out.tolerance = *time.tolerance;
+  out.end = static_cast<double>(steps) * time.dt;
+  return out;
 }
 
 void add_script(const BodyScript& script, int first_vertex, BuiltScene& out) {
@@ -253,10 +261,10 @@ BuiltScene build_scene(const Scene& scene, const Catalogue& catalogue, const Ker
     if (out.surfaces != nullptr) check_surface_start(scene, out, report);
   }
   out.step = step_options(scene);
-  out.limits = step_limits(scene);
   // An end that is a multiple of dt up to rounding takes no step more.
   out.steps = scene.time.steps ? *scene.time.steps
                                : std::max(1L, static_cast<long>(std::ceil(*scene.time.end / scene.time.dt - 1e-6)));
+  out.limits = step_limits(scene, out.steps);
   if (scene.time.quasi_static()) check_held(scene, out);
   return out;
 }

@@ -57,6 +57,12 @@ ReportRecord report_of(const StepRecord& record, const BuiltScene& built, const 
   }
   if (std::isfinite(record.smallest_gap)) out.smallest_gap = record.smallest_gap;
   out.contacts = record.contacts;
+  const Budget& budget = record.budget;
+  out.budget = {{"change", budget.change},          {"script", budget.script},      {"loads", budget.loads},
+                {"barrier", budget.barrier},        {"friction", -budget.friction}, {"damping", -budget.damping},
+                {"integrator", -budget.integrator}, {"residual", budget.residual}};
+  const auto numbers = [](const Eigen::Vector3d& v) { return std::array{v[0], v[1], v[2]}; };
+  out.momentum = {{"linear", numbers(record.momentum.linear)}, {"angular", numbers(record.momentum.angular)}};
   if (record.forces) out.forces = forces_by_object(*record.forces, built.bodies);
   out.probes = probed(built, x);
   out.more = {{"step_speed", record.step_speed},
@@ -69,6 +75,7 @@ ReportRecord report_of(const StepRecord& record, const BuiltScene& built, const 
               {"barrier_stiffness", record.barrier_stiffness},
               {"energy_added", record.energy_added}};
   if (built.limits) out.more.emplace_back("refused", record.refused);
+  if (built.limits && std::isfinite(built.limits->tolerance)) out.more.emplace_back("error", record.error);
   if (!built.loads.empty()) out.more.emplace_back("load_factor", record.load_factor);
   return out;
 }
@@ -86,7 +93,8 @@ class Output {
       forces_ = ContactForces{none, none};
     }
     if (scene.output.frames)
-      frames_ = std::make_unique<FrameWriter>(folder, name_of_scene(scene), scene.output.frame_interval);
+      frames_ = std::make_unique<FrameWriter>(folder, name_of_scene(scene),
+                                              built.limits ? built.limits->interval : scene.output.frame_interval);
   }
 
   void state(const State& state, bool last = false) {
@@ -142,7 +150,7 @@ std::string failure_of(const StepRecord& record, const State& state, const Built
 // Whether the state is at the end of the run. Steps that adapt end at all multiples of dt.
 bool is_done(const State& state, const BuiltScene& built) {
   if (!built.limits) return state.step >= built.steps;
-  return std::lround(state.time / built.step.dt) >= built.steps && state.time >= built.steps * built.step.dt;
+  return state.time >= built.limits->end;
 }
 
 long peak_memory() {

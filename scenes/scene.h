@@ -192,9 +192,10 @@ struct SceneGround : Located {
 
 struct TimeSettings : Located {
   std::string integrator = "implicit_euler";
-  double dt = 0;                 // s
-  std::optional<double> min_dt;  // s; absent: of the integrator
-  std::optional<double> end;     // s; exactly one of `end` and `steps`
+  double dt = 0;                    // s
+  std::optional<double> min_dt;     // s; absent: of the integrator
+  std::optional<double> tolerance;  // m; absent: dt does not follow the error
+  std::optional<double> end;        // s; exactly one of `end` and `steps`
   std::optional<int> steps;
 
   bool quasi_static() const { return integrator == "quasi_static"; }

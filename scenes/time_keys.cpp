@@ -15,7 +15,11 @@ Section<TimeSettings> time_section() {
       number_key("min_dt", &T::min_dt, "s", positive, Need::optional,
                  "a step that fails is tried again with half of its dt, down to this one; steps then grow again up to "
                  "`dt`, and end at all multiples of `dt`",
-                 "steps keep their dt; of quasi_static a thousandth of it"),
+                 "steps keep their dt; of quasi_static, and with a tolerance, a thousandth of it"),
+      number_key("tolerance", &T::tolerance, "m", positive, Need::optional,
+                 "error of any position that a step may have by the integrator's estimate: dt follows it, between "
+                 "`min_dt` and `dt`; frames are written at multiples of `frame_interval`, or of `dt`",
+                 "dt does not follow the error"),
       number_key("end", &T::end, "s", positive, Need::optional, "simulated time", "give `end` or `steps`"),
       integer_key("steps", &T::steps, from_1, Need::optional, "number of time steps", "give `end` or `steps`"),
       choice_key(
@@ -36,6 +40,10 @@ Section<TimeSettings> time_section() {
     if (time.min_dt && *time.min_dt > time.dt)
       throw SourceError(time.at("min_dt"),
                         fmt::format("'min_dt' is {} s, which is above 'dt', {} s", *time.min_dt, time.dt));
+    if (time.tolerance && time.quasi_static())
+      throw SourceError(time.at("tolerance"),
+                        "'tolerance' has no use for quasi_static: without inertia a step has no error in time; the one "
+                        "of Newton's method is [solver] tolerance");
     constexpr double most = 1e9;
     if (time.end && *time.end / time.dt > most)
       throw SourceError(time.at("end"),

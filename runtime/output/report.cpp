@@ -34,6 +34,8 @@ std::string to_json(const ReportRecord& record) {
   json["linear_iterations"] = record.linear_iterations;
   json["residual"] = record.residual;
   json["energy"] = object_of(record.energies);
+  if (!record.budget.empty()) json["budget"] = object_of(record.budget);
+  for (const auto& [name, p] : record.momentum) json["momentum"][name] = p;
   json["seconds"] = object_of(record.times);
   json["skipped"] = skipped;
   json["smallest_gap"] = record.smallest_gap ? nlohmann::ordered_json(*record.smallest_gap) : nlohmann::ordered_json();

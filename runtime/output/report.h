@@ -29,10 +29,12 @@ struct ReportRecord {
   double dt = 0;    // s
   bool converged = false;
   int newton_iterations = 0;
-  int linear_iterations = 0;                             // of an iterative linear solver
-  double residual = 0;                                   // in the unit of the solver's stopping rule
-  std::vector<std::pair<std::string, double>> energies;  // by term, J
-  std::vector<std::pair<std::string, double>> times;     // by part, s
+  int linear_iterations = 0;                                            // of an iterative linear solver
+  double residual = 0;                                                  // in the unit of the solver's stopping rule
+  std::vector<std::pair<std::string, double>> energies;                 // by term, J
+  std::vector<std::pair<std::string, double>> budget;                   // of the step: change = sum of the others, J
+  std::vector<std::pair<std::string, std::array<double, 3>>> momentum;  // linear, angular; none: left out of the line
+  std::vector<std::pair<std::string, double>> times;                    // by part, s
   std::vector<SkippedPart> skipped;
   std::optional<double> smallest_gap;  // m; none without contact
   int contacts = 0;
@@ -42,9 +44,10 @@ struct ReportRecord {
 };
 
 // The record as a line of JSON without its line end: {"step": .., "time": .., "dt": .., "converged": ..,
-// "newton_iterations": .., "linear_iterations": .., "residual": .., "energy": {term: J}, "seconds": {part: s},
-// "skipped": [{"part": .., "reason": ..}], "smallest_gap": .., "contacts": .., "forces": {object: {"contact": [..],
-// "friction": [..]}}, "probes": {name: [..]}, more ..}, keys in this order.
+// "newton_iterations": .., "linear_iterations": .., "residual": .., "energy": {term: J}, "budget": {part: J},
+// "momentum": {kind: [..]}, "seconds": {part: s}, "skipped": [{"part": .., "reason": ..}], "smallest_gap": ..,
+// "contacts": .., "forces": {object: {"contact": [..], "friction": [..]}}, "probes": {name: [..]}, more ..}, keys in
+// this order.
 std::string to_json(const ReportRecord& record);
 
 // A .jsonl file to which lines are added one by one. Each line is handed to the system as a whole and at once, so that

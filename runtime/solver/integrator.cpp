@@ -129,6 +129,27 @@ Integrator integrator_named(const std::string& name, double ratio) {
   throw InputError(fmt::format("there is no integrator '{}'; there are {}", name, fmt::join(integrator_names(), ", ")));
 }
 
+double error_constant(const Integrator& integrator, double ratio) {
+  const int degree = integrator.order + 1;
+  const auto motion = [&](double t) {
+    const auto power = [t](int n) { return n < 0 ? 0 : n == 0 ? 1 : std::pow(t, n) / std::tgamma(n + 1.0); };
+    Moment at{Eigen::Matrix3Xd::Zero(3, 1), Eigen::Matrix3Xd::Zero(3, 1), Eigen::Matrix3Xd::Zero(3, 1)};
+    at.x(0) = power(degree);
+    at.v(0) = power(degree - 1);
+    at.a(0) = power(degree - 2);
+    return at;
+  };
+  std::vector<Moment> moments = {motion(-1 / ratio), motion(0)};
+  for (const Stage& stage : integrator.stages) {
+    Moment end = motion(stage.time);  // of which the acceleration is right
+    end.x = position(stage.xhat, moments, 1) + stage.inertia * end.a;
+    end.v = velocity(stage.vhat, moments, 1) + stage.rate * end.a;
+    moments.push_back(std::move(end));
+  }
+  const double x = integrator.end_x.empty() ? moments.back().x(0) : position(integrator.end_x, moments, 1)(0);
+  return std::abs(x - motion(1).x(0));
+}
+
 Eigen::Matrix3Xd position(const Combination& weights, const std::vector<Moment>& moments, double dt) {
   return sum_of(weights, moments, [dt](const Weights& w, const Moment& moment, Eigen::Matrix3Xd& sum) {
     add_times(w.x, moment.x, sum);

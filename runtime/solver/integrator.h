@@ -57,6 +57,13 @@ std::vector<std::string> integrator_names();
 // ratio: dt of this step over that of the last one, for two-step methods. Throws InputError naming the nearest.
 Integrator integrator_named(const std::string& name, double ratio = 1);
 
+// The error of a step's position is this times dt^(order + 1) times the derivative of that order of the motion (m,
+// where that is in m/s^(order + 1)), to leading order: what the method makes of t^(order + 1)/(order + 1)!. With
+// accelerations, which steps have anyway, it gives an estimate for nothing, like that for Newmark's method in Error
+// Estimation and Adaptivity in Elastodynamics, 1992, Computer Methods in Applied Mechanics and Engineering 101,
+// 369-395. ratio as above.
+double error_constant(const Integrator& integrator, double ratio = 1);
+
 // Sums over moments.
 Eigen::Matrix3Xd position(const Combination& weights, const std::vector<Moment>& moments, double dt);
 Eigen::Matrix3Xd velocity(const Combination& weights, const std::vector<Moment>& moments, double dt);

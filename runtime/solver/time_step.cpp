@@ -46,6 +46,7 @@ StepRecord TimeStepper::step(State& state) {
     record.dt = options_.dt;
 
     const Integrator integrator = integrator_for(state);
+    if (known_.x.cols() == 0 || known_.x != state.x) energies(state);
     std::vector<Moment> moments = known_moments(state, integrator);
     const bool was_stable = integrator.has_inertia || is_stable(state);
     for (const Stage& stage : integrator.stages) {
@@ -55,8 +56,10 @@ StepRecord TimeStepper::step(State& state) {
       record.accepted = result.converged || (options_.accept_unconverged && result.iterations > 0);
       if (!record.accepted) break;
       moments.push_back(moment_of(state, stage, moments, x));
+      balance_.a = moments.back().a;
     }
     record.accepted = record.accepted && finish(integrator, moments, result);
+    if (record.accepted && options_.estimate_error) record.error = local_error(state, integrator, moments);
     if (record.accepted) advance(state, moments.back());
   }
   report(state, result, record);
@@ -74,7 +77,8 @@ std::vector<Moment> TimeStepper::known_moments(const State& state, const Integra
   std::vector<Moment> moments(2);
   if (integrator.two_step) moments[0] = {state.last_x, state.last_v, {}};
   moments[1] = {state.x, state.v, state.a};
-  if (integrator.needs_acceleration && state.a.cols() == 0) moments[1].a = free_acceleration(state);
+  const bool needed = integrator.needs_acceleration || options_.estimate_error;
+  if (needed && state.a.cols() == 0) moments[1].a = free_acceleration(state);
   return moments;
 }
 
@@ -83,7 +87,7 @@ Eigen::Matrix3Xd TimeStepper::free_acceleration(const State& state) {
   prepare_at(state);
   std::vector<int> stored;
   for (int i = 0; i < system_->potential_count(); ++i) {
-    if (!has_lag(system_->potential(i).kernel(), "dt")) stored.push_back(i);
+    if (is_stored(i)) stored.push_back(i);
   }
   Eigen::Matrix3Xd gradient;
   system_->gradient_of(stored, state.x, gradient);
@@ -121,11 +125,13 @@ TimeStepper::Solve TimeStepper::stage_of(const State& state, const Stage& stage,
 Moment TimeStepper::moment_of(const State& state, const Stage& stage, const std::vector<Moment>& moments,
                               const Eigen::Matrix3Xd& x) const {
   const double dt = options_.dt;
+  const bool inert = integrator_named(options_.integrator).has_inertia;
   Moment out;
   out.x = x;
   out.a = (x - position(stage.xhat, moments, dt)) / (stage.inertia * dt * dt);
   out.v = (x - position(xlag_of(stage), moments, dt)) / (stage.inertia / stage.rate * dt);
   for (int v = 0; v < system_->vertices(); ++v) {
+    if (!inert) out.a.col(v).setZero();
     if (system_->moves(v)) continue;
     out.v.col(v) = (x.col(v) - state.x.col(v)) / (stage.time * dt);
     out.a.col(v).setZero();
@@ -137,7 +143,9 @@ NewtonResult TimeStepper::solve_stage(const Solve& stage, const Eigen::Matrix3Xd
                                       StepRecord& record) {
   set_lags(stage);
   if (contact_) begin_contact(stage, x, v, record);
-  return solve(stage, x, record);
+  const NewtonResult result = solve(stage, x, record);
+  if (contact_) record.energy_added += contact_->status(x).energy_added;
+  return result;
 }
 
 // The last combination of an integrator that has one, if contact and the potentials' domains let it be.
@@ -215,6 +223,7 @@ NewtonResult TimeStepper::solve(const Solve& stage, Eigen::Matrix3Xd& x, StepRec
     record.shifts += result.shifts;
     record.indefinite += result.indefinite;
     add(record.seconds, result.seconds);
+    take_balance(x);
     if (options_.record_forces && contact_) record.forces = forces(x);
     if (!friction || !result.converged) break;
 

@@ -48,6 +48,7 @@ struct StepOptions {
   bool project_on_demand = false;   // NewtonOptions::on_demand
   bool record_forces = false;       // of contact, in the record of each step
   bool accept_unconverged = false;  // go on from the best state found; the record still says so
+  bool estimate_error = false;      // of the integrator, in the record of each step
 };
 
 // A potential of a load, and the values of the param that is in proportion to it.
@@ -62,6 +63,25 @@ struct Energies {
   std::vector<std::pair<std::string, double>> stored;  // by potential, in order of addition; equal names are added up
   double kinetic = 0;
   double total = 0;
+};
+
+// What changed the sum of kinetic and stored energy in a step, J:
+// change = script + loads + barrier - friction - damping - integrator + residual. See runtime/solver/budget.cpp.
+struct Budget {
+  double change = 0;
+  double script = 0;      // work of what holds and moves scripted vertices
+  double loads = 0;       // by loads that grow
+  double barrier = 0;     // by changes of barrier stiffness
+  double friction = 0;    // dissipated
+  double damping = 0;     // dissipated by potentials with the lag dt
+  double integrator = 0;  // dissipated by the way in which time is cut into steps
+  double residual = 0;    // of the last Newton solve: the work of forces that do not balance
+};
+
+// Of all that has mass, about the origin.
+struct Momentum {
+  Eigen::Vector3d linear = Eigen::Vector3d::Zero();   // kg m/s
+  Eigen::Vector3d angular = Eigen::Vector3d::Zero();  // kg m^2/s
 };
 
 // Seconds by part; the parts of all Newton solves of the step.
@@ -91,8 +111,11 @@ struct StepRecord {
   double smallest_gap = std::numeric_limits<double>::infinity();  // m
   double barrier_stiffness = 0;                                   // largest
   double energy_added = 0;                                        // J, by changes of barrier stiffness
-  double load_factor = 1;                                         // of the state after the step
-  int refused = 0;                                                // longer steps that were tried before
+  double error = 0;                                               // m, where it is estimated: of the step, any vertex
+  Budget budget;                                                  // of a step that was accepted
+  Momentum momentum;
+  double load_factor = 1;  // of the state after the step
+  int refused = 0;         // longer steps that were tried before
   Energies energy;
   std::optional<ContactForces> forces;  // at the end of the step, friction as the last solve had it
   StepSeconds seconds;
@@ -137,6 +160,9 @@ class TimeStepper {
   void prepare_at(const State& state);
   void set_loads(double factor);
   bool is_stable(const State& state);
+  void take_balance(const Eigen::Matrix3Xd& x);
+  Budget budget_of(const State& state, const StepRecord& record, const Evaluation& evaluation);
+  double local_error(const State& state, const Integrator& integrator, const std::vector<Moment>& moments) const;
   void judge_path(const State& state, const Eigen::Matrix3Xd& x, bool was_stable, NewtonResult& result);
   Eigen::Matrix3Xd free_acceleration(const State& state);
   void set_lags(const Solve& stage);
@@ -145,6 +171,8 @@ class TimeStepper {
   ContactForces forces(const Eigen::Matrix3Xd& x);
   void advance(State& state, const Moment& end) const;
   void report(const State& state, const NewtonResult& result, StepRecord& record);
+  bool is_stored(int potential) const;
+  double kinetic_energy(const Eigen::Matrix3Xd& v) const;
   Energies energies_of(const Evaluation& evaluation, const Eigen::Matrix3Xd& v) const;
   std::vector<std::string> skipped_parts() const;
 
@@ -154,6 +182,17 @@ class TimeStepper {
   Contact* contact_;
   StepOptions options_;
   Script script_;
+  // Forces on the vertices (N, downhill is minus these) and accelerations that the last solve balanced.
+  struct Balance {
+    Eigen::Matrix3Xd stored, friction, damping, a;
+  };
+  Balance balance_;
+  // Of the state at the end of the last step.
+  struct Known {
+    Eigen::Matrix3Xd x;
+    PotentialValues energy;
+  };
+  Known known_;
   std::vector<Load> loads_;
   double load_end_ = 0;                            // s; 0: loads do not change
   std::optional<std::pair<double, bool>> stable_;  // time of the state that stability was last found for, and it

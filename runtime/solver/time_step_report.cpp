@@ -1,5 +1,6 @@
 // What a step tells of itself, and the energies of states.
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "runtime/solver/lags.h"
@@ -23,8 +24,24 @@ void TimeStepper::report(const State& state, const NewtonResult& result, StepRec
     record.contacts = status.active;
     record.smallest_gap = status.smallest_gap;
     record.barrier_stiffness = status.stiffness;
-    record.energy_added = status.energy_added;
   }
+  if (!record.accepted) return;
+  record.budget = budget_of(state, record, result.evaluation);
+  known_ = {state.x, result.evaluation.by_potential};
+  for (int v = 0; v < system_->vertices(); ++v) {
+    const Eigen::Vector3d p = mass_[v] * state.v.col(v), x = state.x.col(v);
+    record.momentum.linear += p;
+    record.momentum.angular += x.cross(p);
+  }
+}
+
+bool TimeStepper::is_stored(int potential) const { return !has_lag(system_->potential(potential).kernel(), "dt"); }
+
+double TimeStepper::kinetic_energy(const Eigen::Matrix3Xd& v) const {
+  if (!integrator_named(options_.integrator).has_inertia) return 0;
+  double sum = 0;
+  for (int i = 0; i < mass_.size(); ++i) sum += mass_[i] / 2 * v.col(i).squaredNorm();
+  return sum;
 }
 
 // Lags and contact of a state that nothing was stepped to.
@@ -36,16 +53,19 @@ void TimeStepper::prepare_at(const State& state) {
   contact_->set_active(state.x);
 }
 
+// What the next step finds known of the state at its start is set here too.
 Energies TimeStepper::energies(const State& state) {
   prepare_at(state);
-  return energies_of(system_->value(state.x), state.v);
+  const Evaluation evaluation = system_->value(state.x);
+  known_ = {state.x, evaluation.by_potential};
+  return energies_of(evaluation, state.v);
 }
 
 Energies TimeStepper::energies_of(const Evaluation& evaluation, const Eigen::Matrix3Xd& v) const {
   Energies energies;
   for (int i = 0; i < system_->potential_count(); ++i) {
     const Potential& potential = system_->potential(i);
-    if (has_lag(potential.kernel(), "dt")) continue;
+    if (!is_stored(i)) continue;
     const double value = evaluation.by_potential[static_cast<size_t>(i)];
     energies.total += value;
     const auto same = std::find_if(energies.stored.begin(), energies.stored.end(),
@@ -56,8 +76,7 @@ Energies TimeStepper::energies_of(const Evaluation& evaluation, const Eigen::Mat
       energies.stored.emplace_back(potential.name(), value);
     }
   }
-  if (!integrator_named(options_.integrator).has_inertia) return energies;
-  for (int i = 0; i < mass_.size(); ++i) energies.kinetic += mass_[i] / 2 * v.col(i).squaredNorm();
+  energies.kinetic = kinetic_energy(v);
   energies.total += energies.kinetic;
   return energies;
 }
