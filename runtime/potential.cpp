@@ -112,12 +112,12 @@ void Potential::Impl::prepare() {
   const auto width = static_cast<size_t>(lanes);
   const size_t in = static_cast<size_t>(kernel->raw) * width, out = static_cast<size_t>(kernel->elements) * width;
 #pragma omp parallel for schedule(static) if (count > 4096)
-  for (size_t block = 0; block < static_cast<size_t>(blocks()); ++block) {
+  for (size_t place = 0; place < static_cast<size_t>(blocks() * quadrature); ++place) {
     if (single()) {
-      kernel->single->prepare_elements(raw.data() + block * in, single_uniforms.data(),
-                                       single_elements.data() + block * out);
+      kernel->single->prepare_elements(raw.data() + place * in, single_uniforms.data(),
+                                       single_elements.data() + place * out);
     } else {
-      kernel->prepare_elements(raw.data() + block * in, uniforms.data(), elements.data() + block * out);
+      kernel->prepare_elements(raw.data() + place * in, uniforms.data(), elements.data() + place * out);
     }
   }
 }
@@ -148,6 +148,19 @@ lanes::Stencils Potential::Impl::view() const {
 void Potential::set_param(const std::string& param, const std::vector<double>& values) {
   impl->give_params({{param, values}});
   if (impl->curvature) impl->curvature->give_params({{param, values}});
+}
+
+void Potential::follow(const std::string& name, TimedValues values) {
+  impl->timed.insert_or_assign(name, std::move(values));
+}
+
+void Potential::set_time(double time) {
+  for (const auto& [name, values] : impl->timed) {
+    const auto is_it = [&](const ErgonInput& input) { return name == input.name && input.role == ERGON_PARAM; };
+    const ErgonInput* inputs = impl->kernel->inputs;
+    const bool uniform = std::any_of(inputs, inputs + impl->kernel->n_inputs, is_it);
+    uniform ? set_param(name, values(time)) : set_rest(name, values(time));
+  }
 }
 
 const std::string& Potential::name() const { return impl->name; }

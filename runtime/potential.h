@@ -3,6 +3,7 @@
 // evaluation reads, so that nothing is converted while a scene runs.
 
 #include <Eigen/Core>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -32,14 +33,19 @@ struct Kernel {
 using Parameters = std::map<std::string, std::vector<double>>;
 // Rest data by name, one value set per stencil.
 using StencilData = std::map<std::string, std::vector<double>>;
+// Values of a param or rest data at a time (s).
+using TimedValues = std::function<std::vector<double>(double time)>;
 
 class Potential {
  public:
   // A density on every cell of a mesh. Vertex v of the mesh is vertex first_vertex + v of the system. `exactness` of
   // the quadrature: 0 to kMaxExactness, or the element's default. Throws InputError for a param that is missing,
-  // unknown or of the wrong size, an element the density cannot live on, and cells that check_mesh refuses.
+  // unknown or of the wrong size, an element the density cannot live on, and cells that check_mesh refuses. Rest data:
+  // one value set per cell, or one per point of quadrature of each (runtime/mesh/sites.h), as params that vary are
+  // (symbolic/varied.h).
   static Potential on_mesh(std::string name, Kernel kernel, const Mesh& mesh, int first_vertex,
-                           const Parameters& params, std::optional<int> exactness = std::nullopt);
+                           const Parameters& params, std::optional<int> exactness = std::nullopt,
+                           const StencilData& rest = {});
 
   // A stencil energy: the vertices of the kernel's points, one stencil after the other. `rest` holds rest data by name,
   // one value set per stencil (components adjacent): a rest vector that is named like a dof but with a capital first
@@ -67,10 +73,18 @@ class Potential {
   // The same for on_combinations: weights[(stencil*q_vectors + k)*points + a], pure numbers; all rest data is given.
   void set_combinations(const std::vector<int>& stencils, const std::vector<double>& weights, const StencilData& rest);
 
-  // Lag data by name: one value set for all stencils, or one per stencil (components adjacent).
+  // Lag data by name: one value set for all stencils, one per stencil (components adjacent), or one per point of
+  // quadrature of each.
   // Evaluation throws std::logic_error while a lag has never been set.
   void set_lag(const std::string& lag, const std::vector<double>& values);
   void set_param(const std::string& param, const std::vector<double>& values);
+  // Rest data by name, as set_lag.
+  void set_rest(const std::string& rest, const std::vector<double>& values);
+
+  // A param or rest data that is a function of time: set_time gives it its values, and a time step calls that at the
+  // end of each stage.
+  void follow(const std::string& name, TimedValues values);
+  void set_time(double time);  // s
 
   struct Impl;
   std::shared_ptr<Impl> impl;

@@ -36,13 +36,14 @@ struct Potential::Impl {
   AlignedVector<double> weights;   // lanes::Stencils::weights
   AlignedVector<double> frames;    // lanes::Stencils::frames, empty for null
   AlignedVector<double> volumes;   // [block][quadrature][lanes]
-  AlignedVector<double> raw;       // [block][kernel->raw][lanes]
-  AlignedVector<double> elements;  // [block][kernel->elements][lanes]
+  AlignedVector<double> raw;       // [block][quadrature][kernel->raw][lanes]
+  AlignedVector<double> elements;  // [block][quadrature][kernel->elements][lanes]
   AlignedVector<double> uniforms;
   AlignedVector<float> single_elements;  // of a kernel in single precision, in place of these two
   AlignedVector<float> single_uniforms;
   std::vector<double> params;
   std::vector<char> lag_set;  // per input
+  std::map<std::string, TimedValues> timed;
   // The same potential with the kernel that gives its Hessian, where that is not the one that gives value and gradient.
   std::shared_ptr<Impl> curvature;
 
@@ -51,7 +52,7 @@ struct Potential::Impl {
   // Counted up by every change, so that a System sees which of its copies is out of date.
   unsigned long stencil_version = 1;
   unsigned long lag_version = 1;
-  unsigned long param_version = 1;
+  unsigned long param_version = 1;  // of rest data as well
 
   // Stencils are cut into chunks of `chunk` blocks (the last may be shorter). Within a chunk of n blocks, lane l holds
   // n stencils that follow one another: neighbours share vertices, and lanes of one block should not.
@@ -83,7 +84,7 @@ struct Potential::Impl {
   void order_vertices(const std::vector<int>& given, int step, const std::vector<int>& chosen);
   void take_weights(const std::vector<double>& given);
   void allocate_raw();
-  // Writes one value set for all stencils or one per stencil into raw.
+  // Writes one value set for all stencils, one per stencil or one per point of quadrature into raw.
   void write_raw(const ErgonInput& input, const std::vector<double>& values, const char* kind);
   bool single() const { return kernel->single != nullptr; }
   const ErgonInput& input(const std::string& wanted, int role, const char* kind) const;

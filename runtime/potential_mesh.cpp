@@ -85,10 +85,11 @@ void factor_table(Element element, std::vector<double>& axis, std::vector<int>& 
 }  // namespace
 
 Potential Potential::on_mesh(std::string name, Kernel kernel, const Mesh& mesh, int first_vertex,
-                             const Parameters& params, std::optional<int> exactness) {
+                             const Parameters& params, std::optional<int> exactness, const StencilData& rest) {
   Potential potential{std::make_shared<Impl>()};
   Impl& d = *potential.impl;
-  if (kernel.curvature) d.curvature = on_mesh(name, *kernel.curvature, mesh, first_vertex, params, exactness).impl;
+  if (kernel.curvature)
+    d.curvature = on_mesh(name, *kernel.curvature, mesh, first_vertex, params, exactness, rest).impl;
   d.bind(std::move(name), std::move(kernel));
   if (!d.kernel->density) d.fail(fmt::format("{} is a stencil energy, not a density", d.kernel->energy));
   const int dimension = dimension_of(mesh.element);
@@ -169,7 +170,7 @@ Potential Potential::on_mesh(std::string name, Kernel kernel, const Mesh& mesh, 
   }
   d.order_vertices(ordered, n, d.used);
   d.allocate_raw();
-  d.give_rest(mesh.X, {});
+  d.give_rest(mesh.X, rest);
   return potential;
 }
 

@@ -74,25 +74,32 @@ void Potential::Impl::order_vertices(const std::vector<int>& given, int step, co
 }
 
 void Potential::Impl::allocate_raw() {
-  raw.resize(lane_stencil.size() * static_cast<size_t>(kernel->raw));
-  const size_t kept = lane_stencil.size() * static_cast<size_t>(kernel->elements);
+  const size_t places = lane_stencil.size() * static_cast<size_t>(quadrature);
+  raw.resize(places * static_cast<size_t>(kernel->raw));
+  const size_t kept = places * static_cast<size_t>(kernel->elements);
   single() ? single_elements.resize(kept) : elements.resize(kept);
   raw_changed = true;
 }
 
 void Potential::Impl::write_raw(const ErgonInput& target, const std::vector<double>& values, const char* kind) {
   const auto size = static_cast<size_t>(size_of(target)), all = size * static_cast<size_t>(count);
-  if (values.size() != size && values.size() != all) {
-    fail(fmt::format("{} '{}' of {} takes {} for all stencils or {} for {}, got {}", kind, target.name, kernel->energy,
-                     values_text(size), values_text(all), count, values.size()));
+  const auto points = static_cast<size_t>(quadrature);
+  if (values.size() != size && values.size() != all && values.size() != all * points) {
+    fail(fmt::format("{} '{}' of {} takes {} for all stencils or {} for {}{}, got {}", kind, target.name,
+                     kernel->energy, values_text(size), values_text(all), count,
+                     points == 1 ? "" : fmt::format(" or {} for their points of quadrature", values_text(all * points)),
+                     values.size()));
   }
-  const size_t step = values.size() == all ? size : 0;
+  const size_t step = values.size() == size ? 0 : values.size() == all ? size : size * points;
+  const size_t within = values.size() == all * points && points > 1 ? size : 0;  // from point to point
   const auto width = static_cast<size_t>(lanes), rows = static_cast<size_t>(kernel->raw);
   double* out = raw.data() + static_cast<size_t>(target.offset) * width;
-  for (size_t lane = 0; lane < lane_stencil.size(); lane += width, out += rows * width) {
-    for (size_t c = 0; c < size; ++c) {
-      for (size_t l = 0; l < width; ++l) {
-        out[c * width + l] = values[step * static_cast<size_t>(lane_stencil[lane + l]) + c];
+  for (size_t lane = 0; lane < lane_stencil.size(); lane += width) {
+    for (size_t p = 0; p < points; ++p, out += rows * width) {
+      for (size_t c = 0; c < size; ++c) {
+        for (size_t l = 0; l < width; ++l) {
+          out[c * width + l] = values[step * static_cast<size_t>(lane_stencil[lane + l]) + within * p + c];
+        }
       }
     }
   }
@@ -103,7 +110,7 @@ void Potential::Impl::give_rest(const Eigen::Matrix3Xd& X, const StencilData& re
   for (const auto& [given, value] : rest) {
     const ErgonInput& target = input(given, ERGON_REST, "rest");
     const size_t expected = static_cast<size_t>(size_of(target)) * static_cast<size_t>(count);
-    if (value.size() != expected) {
+    if (value.size() != expected && value.size() != expected * static_cast<size_t>(quadrature)) {
       fail(fmt::format("rest '{}' of {} takes {} for {} stencils, got {}", given, kernel->energy, values_text(expected),
                        count, value.size()));
     }
@@ -256,6 +263,12 @@ void Potential::set_combinations(const std::vector<int>& stencils, const std::ve
   impl->take_weights(weights);
   impl->give_rest({}, rest);
   if (impl->curvature) Potential{impl->curvature}.set_combinations(stencils, weights, rest);
+}
+
+void Potential::set_rest(const std::string& rest, const std::vector<double>& values) {
+  impl->write_raw(impl->input(rest, ERGON_REST, "rest"), values, "rest");
+  ++impl->param_version;
+  if (impl->curvature) Potential{impl->curvature}.set_rest(rest, values);
 }
 
 void Potential::set_lag(const std::string& lag, const std::vector<double>& values) {

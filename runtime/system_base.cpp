@@ -24,14 +24,15 @@ bool SystemTerm::constant_changed() {
 
   const size_t width = static_cast<size_t>(d.lanes), rows = 3 * static_cast<size_t>(k.q_vectors);
   const size_t packed = rows * (rows + 1) / 2 * width, elements = static_cast<size_t>(k.elements) * width;
-  q_hessians.resize(packed * static_cast<size_t>(d.blocks()));
+  const auto places = static_cast<size_t>(d.blocks() * d.quadrature);
+  q_hessians.resize(packed * places);
   const AlignedVector<double> q(rows * width, 0.0);
   AlignedVector<double> value(width), gradient(rows * width), hessian(packed);
   bool changed = rebuilt;
-  for (size_t block = 0; block < static_cast<size_t>(d.blocks()); ++block) {
-    k.hessian(q.data(), d.elements.data() + block * elements, d.uniforms.data(), value.data(), gradient.data(),
+  for (size_t place = 0; place < places; ++place) {
+    k.hessian(q.data(), d.elements.data() + place * elements, d.uniforms.data(), value.data(), gradient.data(),
               hessian.data());
-    double* kept = q_hessians.data() + block * packed;
+    double* kept = q_hessians.data() + place * packed;
     if (std::memcmp(kept, hessian.data(), packed * sizeof(double)) == 0) continue;
     std::copy(hessian.begin(), hessian.end(), kept);
     changed = true;

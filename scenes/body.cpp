@@ -243,6 +243,7 @@ void order(Body& body) {
   ReorderedMesh reordered = spatial_order(body.mesh);
   body.ordered = std::move(reordered.mesh);
   body.vertex_from = std::move(reordered.vertex_from);
+  body.cell_from = std::move(reordered.cell_from);
 }
 
 }  // namespace

@@ -23,6 +23,7 @@ struct Body {
   Mesh mesh;                     // in the order of its source, moved to its start
   Mesh ordered;                  // the same in the order in which it is computed
   std::vector<int> vertex_from;  // vertex i of `ordered` is vertex vertex_from[i] of `mesh`
+  std::vector<int> cell_from;    // the same of cells
   std::vector<int> fixed;        // vertices of `ordered` that never move
   std::vector<BodyScript> scripts;
   std::vector<int> surface;       // vertices of `ordered` that may touch something

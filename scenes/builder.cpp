@@ -56,7 +56,7 @@ std::vector<std::string> law_warnings(const Scene& scene, const std::vector<std:
   std::set<const Energy*> checked;
   for (size_t i = 0; i < used.size(); ++i) {
     for (size_t j = 0; j < used[i].size(); ++j) {
-      const Energy& energy = *used[i][j].energy;
+      const Energy& energy = *used[i][j].declared;
       const EnergyUse& use = scene.objects[i].energies[j];
       if (!use.wrote("text") && !use.law.ends_with(".energy")) continue;
       if (!checked.insert(&energy).second) continue;
@@ -239,7 +239,10 @@ BuiltScene build_scene(const Scene& scene, const Catalogue& catalogue, const Ker
     Stopwatch watch(out.seconds.meshes);
     for (const SceneObject& object : scene.objects) out.bodies.push_back(load_body(object, folder));
     for (const SceneObstacle& obstacle : scene.obstacles) out.bodies.push_back(load_obstacle(obstacle, folder));
-    for (size_t i = 0; i < used.size(); ++i) check_geometry(scene.objects[i], used[i], out.bodies[i]);
+    for (size_t i = 0; i < used.size(); ++i) {
+      check_geometry(scene.objects[i], used[i], out.bodies[i]);
+      place_fields(scene.objects[i], out.bodies[i], folder, used[i]);
+    }
     lay_out(scene, out);
     out.probes = probes_of(scene, out);
     check_start(scene, out.bodies);

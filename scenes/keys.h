@@ -45,6 +45,7 @@ struct Section {
   // Takes keys that are not in the list; without it they are errors.
   std::function<void(const toml::key&, const toml::node&, const std::string& file, T&)> other;
   std::function<void(const std::string& file, T&)> check;  // what concerns several keys
+  std::vector<SectionText> also = {};  // what the reference tells of values of keys that are not in the list
 };
 
 template <class T>
@@ -54,6 +55,7 @@ SectionText text_of(const Section<T>& section) {
     out.keys.push_back(key.text);
     if (key.section) out.sections.push_back(key.section());
   }
+  out.sections.insert(out.sections.end(), section.also.begin(), section.also.end());
   return out;
 }
 

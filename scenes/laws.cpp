@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+
+#include "symbolic/varied.h"
 
 namespace ergon {
 namespace {
@@ -16,23 +19,10 @@ std::string in_unit(const Symbol& param) {
   return unit == "1" ? "" : " " + unit;
 }
 
-std::vector<double> checked_values(const Energy& energy, const Symbol& param, const ParamValue& written) {
-  const size_t size = static_cast<size_t>(param.shape.size());
-  if (written.components.size() != size)
-    throw SourceError(written.place, fmt::format("'{}' of {} is a {}, found {} numbers", param.name, energy.name,
-                                                 to_string(param.shape), written.components.size()));
-  std::vector<double> out;
-  for (const WrittenNumber& q : written.components) {
-    if (q.unit && *q.unit != param.unit)
-      throw SourceError(written.place, fmt::format("'{}' of {} must be in {}, found \"{}\", which is in {}", param.name,
-                                                   energy.name, to_string(param.unit), q.text, to_string(*q.unit)));
-    if (!param.range.contains(q.value))
-      throw SourceError(written.place, fmt::format("'{}' of {} must be in {}{}, found {}{} (declared in {})",
-                                                   param.name, energy.name, to_string(param.range), in_unit(param),
-                                                   q.text, q.unit ? "" : in_unit(param), to_string(param.place)));
-    out.push_back(q.value);
-  }
-  return out;
+[[noreturn]] void refuse_value(const Energy& energy, const Symbol& param, const std::string& found,
+                               const Place& place) {
+  throw SourceError(place, fmt::format("'{}' of {} must be in {}{}, found {} (declared in {})", param.name, energy.name,
+                                       to_string(param.range), in_unit(param), found, to_string(param.place)));
 }
 
 bool is_thickness(const Symbol& param) {
@@ -48,6 +38,26 @@ const Energy& Laws::get(const std::string& law, const Place& place) {
 }
 
 const Energy& Laws::get(const EnergyUse& use) {
+  const Energy& energy = read(use);
+  const auto has_name = [](const auto& declared) { return declared.name == "weight"; };
+  if (!use.params.contains("weight") || energy.find("weight") != nullptr ||
+      std::any_of(energy.lets.begin(), energy.lets.end(), has_name))
+    return energy;
+  const std::pair key(&energy, std::vector<std::string>{"*"});
+  auto found = made_.find(key);
+  if (found == made_.end()) found = made_.emplace(key, weighted(energy)).first;
+  return found->second;
+}
+
+const Energy& Laws::vary(const Energy& energy, const std::vector<std::string>& params) {
+  if (params.empty()) return energy;
+  const std::pair key(&energy, params);
+  auto found = made_.find(key);
+  if (found == made_.end()) found = made_.emplace(key, varied(energy, params)).first;
+  return found->second;
+}
+
+const Energy& Laws::read(const EnergyUse& use) {
   if (!use.wrote("text")) return get(use.law, use.at("law"));
   const std::string key = to_string(use.at("text"));
   auto found = read_.find(key);
@@ -62,6 +72,29 @@ const Energy& Laws::get(const EnergyUse& use) {
     found = read_.emplace(key, std::move(energy)).first;
   }
   return found->second;
+}
+
+std::vector<double> checked_values(const Energy& energy, const Symbol& param, const ParamValue& written) {
+  const size_t size = static_cast<size_t>(param.shape.size());
+  if (written.components.size() != size)
+    throw SourceError(written.place, fmt::format("'{}' of {} is a {}, found {} numbers", param.name, energy.name,
+                                                 to_string(param.shape), written.components.size()));
+  std::vector<double> out;
+  for (const WrittenNumber& q : written.components) {
+    if (q.unit && *q.unit != param.unit)
+      throw SourceError(written.place, fmt::format("'{}' of {} must be in {}, found \"{}\", which is in {}", param.name,
+                                                   energy.name, to_string(param.unit), q.text, to_string(*q.unit)));
+    if (!param.range.contains(q.value))
+      refuse_value(energy, param, q.text + (q.unit ? "" : in_unit(param)), written.place);
+    out.push_back(q.value);
+  }
+  return out;
+}
+
+void check_range(const Energy& energy, const Symbol& param, double value, const Place& place,
+                 const std::string& where) {
+  if (!param.range.contains(value) || !std::isfinite(value))
+    refuse_value(energy, param, fmt::format("{}{}{}", value, in_unit(param), where), place);
 }
 
 Parameters checked_params(const Energy& energy, const EnergyUse& use, double thickness) {
@@ -82,7 +115,7 @@ Parameters checked_params(const Energy& energy, const EnergyUse& use, double thi
       throw SourceError(use.place, fmt::format("{} needs the param '{}': {}, in {}{}", energy.name, param->name,
                                                param->help.empty() ? "a " + to_string(param->shape) : param->help,
                                                to_string(param->range), in_unit(*param)));
-    out[param->name] = checked_values(energy, *param, written->second);
+    if (!written->second.field) out[param->name] = checked_values(energy, *param, written->second);
   }
   return out;
 }

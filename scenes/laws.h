@@ -3,6 +3,8 @@
 
 #include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "runtime/potential.h"
 #include "scenes/catalogue.h"
@@ -19,18 +21,30 @@ class Laws {
 
   // Throws SourceError at `place` when there is no such law, and at the energy's own place when the file is wrong.
   const Energy& get(const std::string& law, const Place& place);
-  // The same of what an object names, or holds as text: then faults are at their line of the scene.
+  // The same of what an object names, or holds as text: then faults are at their line of the scene. With a `weight`
+  // among its params where the scene gives one.
   const Energy& get(const EnergyUse& use);
+  // An energy that get() gave with some params as data of every element (symbolic/varied.h); the same one for none.
+  const Energy& vary(const Energy& energy, const std::vector<std::string>& params);
 
  private:
+  const Energy& read(const EnergyUse& use);
+
   const Catalogue* catalogue_;
   std::string scene_folder_;
   std::map<std::string, Energy> read_;  // by the name or path that was written, or the place of the text
+  std::map<std::pair<const Energy*, std::vector<std::string>>, Energy>
+      made_;  // of these, by the params that vary; "*": with a weight
 };
 
-// The values of all params of the energy in SI. A param `h` in m that is left out is the thickness of the object, where
-// that has one (not 0), in m. Throws SourceError at the scene's line for a param that is missing, unknown (with the
-// nearest), of the wrong size or unit, or outside its declared range.
+// The values of all params of the energy in SI but those that vary. A param `h` in m that is left out is the thickness
+// of the object, where that has one (not 0), in m. Throws SourceError at the scene's line for a param that is missing,
+// unknown (with the nearest), of the wrong size or unit, or outside its declared range.
 Parameters checked_params(const Energy& energy, const EnergyUse& use, double thickness);
+
+// The values written for one param, in SI, checked as above.
+std::vector<double> checked_values(const Energy& energy, const Symbol& param, const ParamValue& written);
+// Throws SourceError at `place` where a value is outside of the param's range; `where` names the value: " in cell 3".
+void check_range(const Energy& energy, const Symbol& param, double value, const Place& place, const std::string& where);
 
 }  // namespace ergon

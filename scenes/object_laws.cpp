@@ -100,13 +100,20 @@ StencilData rest_data(const Energy& energy, const std::vector<int>& stencils, co
 }
 
 Potential object_potential(const UsedLaw& law, const Kernel& kernel, const Body& body, const BuiltScene& built) {
-  const Energy& energy = *law.energy;
-  if (energy.kind == Energy::Kind::density)
-    return Potential::on_mesh(energy.name, kernel, body.ordered, body.first_vertex, law.params, body.quadrature);
-  std::vector<int> stencils = stencils_on_mesh(energy.geometry, body.ordered);
-  for (int& vertex : stencils) vertex += body.first_vertex;
-  return Potential::on_stencils(energy.name, kernel, stencils, built.start.x, law.params,
-                                rest_data(energy, stencils, built));
+  const Energy& energy = *law.declared;
+  const auto made = [&] {
+    if (energy.kind == Energy::Kind::density)
+      return Potential::on_mesh(energy.name, kernel, body.ordered, body.first_vertex, law.params, body.quadrature,
+                                law.rest);
+    std::vector<int> stencils = stencils_on_mesh(energy.geometry, body.ordered);
+    for (int& vertex : stencils) vertex += body.first_vertex;
+    StencilData rest = rest_data(energy, stencils, built);
+    rest.insert(law.rest.begin(), law.rest.end());
+    return Potential::on_stencils(energy.name, kernel, stencils, built.start.x, law.params, rest);
+  };
+  Potential out = made();
+  for (const auto& [name, values] : law.timed) out.follow(name, values);
+  return out;
 }
 
 // A law in a folder named loads, which is in proportion to its first param.
@@ -122,7 +129,13 @@ std::vector<UsedLaw> object_laws(const SceneObject& object, Laws& laws) {
   for (const EnergyUse& use : object.energies) {
     const Energy& energy = laws.get(use);
     check_supported(energy, use.at("law"));
-    out.push_back({&energy, checked_params(energy, use, object.thickness)});
+    UsedLaw law{&energy, &energy, checked_params(energy, use, object.thickness), law_fields(energy, use, object),
+                {},      {}};
+    std::vector<std::string> over_mesh;
+    for (const LawField& field : law.fields)
+      if (field.over_mesh()) over_mesh.push_back(field.param->name);
+    law.energy = &laws.vary(energy, over_mesh);
+    out.push_back(std::move(law));
   }
   return out;
 }
@@ -148,13 +161,37 @@ void check_geometry(const SceneObject& object, const std::vector<UsedLaw>& laws,
   }
 }
 
+void place_fields(const SceneObject& object, const Body& body, const std::string& folder, std::vector<UsedLaw>& laws) {
+  for (UsedLaw& law : laws) {
+    if (law.fields.empty()) continue;
+    const Energy& energy = *law.declared;
+    const Sites sites = energy.kind == Energy::Kind::density
+                            ? sites_of_cells(body.ordered, body.quadrature)
+                            : sites_of_stencils(body.ordered, stencils_on_mesh(energy.geometry, body.ordered),
+                                                points_of_stencil(energy.geometry));
+    const FieldPlace place{&object, &body, &sites, folder};
+    for (const LawField& field : law.fields) {
+      (field.over_mesh() ? law.rest : law.params)[field.param->name] = field_values(energy, field, place);
+      if (field.in_time()) law.timed[field.param->name] = timed_values(energy, field, place);
+    }
+  }
+}
+
 void add_object(const Scene& scene, const SceneObject& object, const std::vector<UsedLaw>& laws,
                 const UsedKernels& kernels, size_t body, BuiltScene& out) {
   for (size_t i = 0; i < laws.size(); ++i) try {
       const Energy& energy = *laws[i].energy;
       const int index = out.system->add(object_potential(laws[i], kernels.get(energy), out.bodies[body], out));
-      if (!is_load(energy)) continue;
-      const std::string& param = energy.with_role(Role::param).front()->name;
+      if (!is_load(*laws[i].declared)) continue;
+      const std::string& param = laws[i].declared->with_role(Role::param).front()->name;
+      const auto is_it = [&](const LawField& field) { return field.param->name == param; };
+      const auto field = std::find_if(laws[i].fields.begin(), laws[i].fields.end(), is_it);
+      if (scene.time.quasi_static() && field != laws[i].fields.end())
+        throw SourceError(field->place,
+                          fmt::format("'{}' of {} grows with the load of a quasi-static scene: give it as one "
+                                      "number, and let 'weight' vary",
+                                      param, energy.name));
+      if (field != laws[i].fields.end()) continue;
       add_load(scene, index, param, laws[i].params.at(param), out);
     } catch (const InputError& bad) {
       throw SourceError(object.energies[i].place, fmt::format("object '{}': {}", object.name, bad.what()));

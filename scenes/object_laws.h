@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "scenes/builder.h"
+#include "scenes/fields.h"
 #include "scenes/laws.h"
 #include "scenes/used_kernels.h"
 
@@ -12,8 +13,13 @@ namespace ergon {
 
 // One law of one object, checked.
 struct UsedLaw {
-  const Energy* energy;
-  Parameters params;
+  const Energy* declared;        // as the file has it, or with a weight
+  const Energy* energy;          // the same with what varies over the mesh as data of its elements
+  Parameters params;             // that do not vary over the mesh
+  std::vector<LawField> fields;  // what varies, over the mesh or in time
+  // Set by place_fields: values of those over the mesh, and of those in time.
+  StencilData rest;
+  std::map<std::string, TimedValues> timed;
 };
 
 // Reads the laws and their params. Throws SourceError at the scene's line unless objects can carry them: densities, and
@@ -23,6 +29,10 @@ std::vector<UsedLaw> object_laws(const SceneObject& object, Laws& laws);
 
 // Throws SourceError at the scene's line unless the cells of the body have what the laws live on.
 void check_geometry(const SceneObject& object, const std::vector<UsedLaw>& laws, const Body& body);
+
+// Evaluates what varies on the object's mesh. `folder` is what paths are relative to. Throws SourceError at the scene's
+// line, or in a file of data, for values out of range and for data that do not fit the mesh.
+void place_fields(const SceneObject& object, const Body& body, const std::string& folder, std::vector<UsedLaw>& laws);
 
 // Adds the potentials of object `body` to a scene whose bodies, system, masses and start are known.
 void add_object(const Scene& scene, const SceneObject& object, const std::vector<UsedLaw>& laws,

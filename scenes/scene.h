@@ -5,11 +5,13 @@
 #include <array>
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "symbolic/diagnostic.h"
+#include "symbolic/formula.h"
 #include "symbolic/units.h"
 
 namespace ergon {
@@ -36,11 +38,24 @@ struct WrittenNumber {
   std::string text;  // "0.5 MPa"
 };
 
+struct FieldValue;
+
 // The values of one param of an energy, components column by column.
 struct ParamValue {
   std::vector<WrittenNumber> components;
+  std::shared_ptr<const FieldValue> field;  // in place of components where it varies; else null
   Place key_place;
   Place place;
+};
+
+// A param that varies over the object or in time: by one of a formula, regions, data of cells, data of vertices.
+struct FieldValue : Located {
+  std::string text;  // of the formula
+  std::map<std::string, ParamValue> constants;
+  std::shared_ptr<const Formula> formula;     // null without one
+  std::map<std::string, ParamValue> regions;  // by name; "otherwise" stands for all cells in none of these
+  std::string cells, vertices;                // a .csv file, relative to the scene
+  std::string column;                         // of that file; "" for that named like the param
 };
 
 struct EnergyUse : Located {
@@ -55,6 +70,11 @@ struct BoxSelector : Located {
   static constexpr double inf = std::numeric_limits<double>::infinity();
   Vector3 min = {-inf, -inf, -inf};
   Vector3 max = {inf, inf, inf};
+};
+
+// The cells whose centre is in a box.
+struct SceneRegion : BoxSelector {
+  std::string name;
 };
 
 struct BoxSource : Located {
@@ -136,6 +156,7 @@ struct SceneObject : SceneShape {
   double volume = 0;              // m^3, of a loose point
   Vector3 velocity = {0, 0, 0};   // m/s
   std::vector<EnergyUse> energies;
+  std::vector<SceneRegion> regions;
   std::vector<BoxSelector> fixed;
   std::vector<ScriptedBox> scripted;
   std::optional<Copies> copies;  // none once a scene has been read: each is an object of its own

@@ -5,6 +5,7 @@
 
 #include "runtime/mesh/quadrature.h"
 #include "scenes/contact_keys.h"
+#include "scenes/field_keys.h"
 #include "scenes/shape_keys.h"
 #include "scenes/time_keys.h"
 
@@ -80,12 +81,16 @@ Key<EnergyUse> energy_text_key() {
 
 Section<EnergyUse> energy_section() {
   using T = EnergyUse;
-  Section<T> out{"[[object.energy]]",
-                 "One law that the object obeys. Every other key is a param of that energy (`ergon show LAW` lists "
-                 "them with unit and range): a number, a string with a unit, or an array for a vector or a matrix.",
-                 {},
-                 {},
-                 {}};
+  Section<T> out{
+      "[[object.energy]]",
+      "One law that the object obeys. Every other key is a param of that energy (`ergon show LAW` lists "
+      "them with unit and range): a number, a string with a unit, an array for a vector or a matrix, or a "
+      "table where it varies. The param `weight` of any energy is what its value is multiplied by, 1 if left "
+      "out.",
+      {},
+      {},
+      {},
+      {text_of(field_section())}};
   out.keys = {
       text_key("law", &T::law, Need::optional,
                "name of an energy in the catalogue, or path of an .energy file relative to the scene",
@@ -118,6 +123,20 @@ void check_selector(const BoxSelector& box) {
     if (box.min[axis] > box.max[axis])
       throw SourceError(box.at("max"), fmt::format("'max' is below 'min' along axis {}: {} m < {} m", "xyz"[axis],
                                                    box.max[axis], box.min[axis]));
+}
+
+Section<SceneRegion> region_section() {
+  using T = SceneRegion;
+  Section<T> out{"[[object.region]]",
+                 "A box; the object's cells whose centre is in it (after scale, rotate and translate) are a region, in "
+                 "which params may have values of their own.",
+                 {},
+                 {},
+                 {}};
+  out.keys = selector_keys<T>();
+  out.keys.insert(out.keys.begin(), text_key("name", &T::name, Need::required, "a name of its own in the object"));
+  out.check = [](const std::string&, const T& region) { check_selector(region); };
+  return out;
 }
 
 Section<BoxSelector> fixed_section() {
@@ -257,6 +276,7 @@ Section<SceneObject> object_section() {
                  "required for loose points"),
       vector_key("velocity", &T::velocity, "m/s", any, Need::optional, "velocity at the start"),
       tables_key("energy", &T::energies, energy_section, Need::optional, "what a free object is made of; at least one"),
+      tables_key("region", &T::regions, region_section, Need::optional, "named parts of the object, for params"),
       tables_key("fixed", &T::fixed, fixed_section, Need::optional, "vertices that never move"),
       tables_key("scripted", &T::scripted, scripted_section, Need::optional, "vertices that follow a script"),
       table_key("copies", &T::copies, copies_section, "the object stands in the scene several times"),

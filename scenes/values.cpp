@@ -1,5 +1,7 @@
 #include "scenes/values.h"
 
+#include "scenes/field_keys.h"
+
 #include <fmt/format.h>
 
 #include <charconv>
@@ -88,6 +90,10 @@ ParamValue read_param(const toml::key& key, const toml::node& node, const std::s
   ParamValue out;
   out.key_place = place_of(key.source(), file);
   out.place = place_of(node.source(), file);
+  if (const toml::table* table = node.as_table()) {
+    out.field = read_field(*table, file);
+    return out;
+  }
   const std::string name(key.str());
   const toml::array* rows = node.as_array();
   const bool matrix = rows != nullptr && !rows->empty() && rows->is_array_of_tables() == false && (*rows)[0].is_array();

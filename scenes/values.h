@@ -27,7 +27,8 @@ std::string describe(const toml::node& node);
 // for an unknown unit.
 WrittenNumber read_quantity(const toml::node& node, const std::string& key, const std::string& expected,
                             const std::string& file);
-// The same for a param of an energy, which may be an array of quantities, or of such arrays by rows.
+// The same for a param of an energy, which may be an array of quantities, or of such arrays by rows; or a table, which
+// says how it varies (scenes/field_keys.h).
 ParamValue read_param(const toml::key& key, const toml::node& node, const std::string& file);
 
 double read_number(const toml::node& node, const ValueRule& rule, const std::string& file);

@@ -19,6 +19,7 @@
 //   void at(const Expression& e);                              the operations that follow are those of e
 //   void formed(const Expression& e, const std::vector<Scalar>& components);   the result of e
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,11 @@ struct Elaborated {
 // `case_name` must be one of energy.cases, or "" when the energy has none.
 template <class A>
 Elaborated<typename A::Scalar> elaborate(const Energy& energy, const std::string& case_name, A& algebra);
+
+// One expression that type_of() has seen (symbolic/typing.h), of names that have these values.
+template <class A>
+Tensor<typename A::Scalar> evaluate(const Expression& expression,
+                                    const std::map<std::string, Tensor<typename A::Scalar>>& names, A& algebra);
 
 }  // namespace ergon
 

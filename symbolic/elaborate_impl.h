@@ -21,6 +21,13 @@ class Elaborator {
   using T = Tensor<S>;
 
   explicit Elaborator(A& algebra) : a_(algebra), op_(algebra) {}
+  Elaborator(A& algebra, std::map<std::string, T> names) : a_(algebra), op_(algebra), names_(std::move(names)) {}
+
+  T tensor(const Expression& e) {
+    T t = evaluated(e);
+    if constexpr (requires { a_.formed(e, t.at); }) a_.formed(e, t.at);
+    return t;
+  }
 
   Elaborated<S> run(const Energy& energy, const std::string& case_name) {
     if (energy.cases.empty() ? !case_name.empty()
@@ -65,12 +72,6 @@ class Elaborator {
   }
 
   S scalar(const Expression& e) { return tensor(e).at[0]; }
-
-  T tensor(const Expression& e) {
-    T t = evaluated(e);
-    if constexpr (requires { a_.formed(e, t.at); }) a_.formed(e, t.at);
-    return t;
-  }
 
   // Tells an algebra that wants to know which expression the operations from here on belong to.
   void at(const Expression& e) {
@@ -188,6 +189,12 @@ class Elaborator {
 template <class A>
 Elaborated<typename A::Scalar> elaborate(const Energy& energy, const std::string& case_name, A& algebra) {
   return Elaborator<A>(algebra).run(energy, case_name);
+}
+
+template <class A>
+Tensor<typename A::Scalar> evaluate(const Expression& expression,
+                                    const std::map<std::string, Tensor<typename A::Scalar>>& names, A& algebra) {
+  return Elaborator<A>(algebra, names).tensor(expression);
 }
 
 }  // namespace ergon

@@ -50,11 +50,11 @@ using Entries = ErgonSingle;
 using Entries = ErgonKernel;
 #endif
 
-// Of the block's kernel, where it is a density in principal stretches.
+// At point p of quadrature of a block, where the kernel is a density in principal stretches.
 template <class S>
-auto stretch_kernel(const Stencils& s, int block) {
+auto stretch_kernel(const Stencils& s, int block, int p) {
   static_assert(S::kDensity);
-  return StretchKernel<Entries, S::kVectors>{entries_of(s), s.kernel->displacement != 0, data_of(s, block),
+  return StretchKernel<Entries, S::kVectors>{entries_of(s), s.kernel->displacement != 0, data_of(s, block, p),
                                              uniforms_of(s)};
 }
 
@@ -64,19 +64,19 @@ bool in_stretches(const Stencils& s) {
 }
 
 template <class S>
-void kernel_value(const Stencils& s, int block, const Scalar* q, Scalar* value, Scalar* margin) {
+void kernel_value(const Stencils& s, int block, int p, const Scalar* q, Scalar* value, Scalar* margin) {
   if constexpr (S::kDensity) {
-    if (in_stretches<S>(s)) return stretch_kernel<S>(s, block).value(q, value, margin);
+    if (in_stretches<S>(s)) return stretch_kernel<S>(s, block, p).value(q, value, margin);
   }
-  entries_of(s).value(q, data_of(s, block), uniforms_of(s), value, margin);
+  entries_of(s).value(q, data_of(s, block, p), uniforms_of(s), value, margin);
 }
 
 template <class S>
-void kernel_gradient(const Stencils& s, int block, const Scalar* q, Scalar* value, Scalar* by_q) {
+void kernel_gradient(const Stencils& s, int block, int p, const Scalar* q, Scalar* value, Scalar* by_q) {
   if constexpr (S::kDensity) {
-    if (in_stretches<S>(s)) return stretch_kernel<S>(s, block).gradient(q, value, by_q);
+    if (in_stretches<S>(s)) return stretch_kernel<S>(s, block, p).gradient(q, value, by_q);
   }
-  entries_of(s).gradient(q, data_of(s, block), uniforms_of(s), value, by_q);
+  entries_of(s).gradient(q, data_of(s, block, p), uniforms_of(s), value, by_q);
 }
 
 template <class S>
@@ -93,7 +93,7 @@ void value_of(const Stencils& s, BlockRange range, const double* x, ChunkResult*
       const Weights<S> w(s, block, p);
       form_q<S>(s, w, points, q);
       Frame<S>(s, block, p).to_element(q);
-      kernel_value<S>(s, block, q, value, margin);
+      kernel_value<S>(s, block, p, q, value, margin);
       sum += w.times_volume(load(value));
       if (s.kernel->requires_ > 0) tally.limit(margin, count);
     }
@@ -119,7 +119,7 @@ void gradient_of(const Stencils& s, BlockRange range, const double* x, double* g
       form_q<S>(s, w, points, q);
       const Frame<S> frame(s, block, p);
       frame.to_element(q);
-      kernel_gradient<S>(s, block, q, value, by_q);
+      kernel_gradient<S>(s, block, p, q, value, by_q);
       frame.to_space(by_q);
       sum += w.times_volume(load(value));
       chain_gradient<S>(s, w, by_q, by_point);
@@ -184,18 +184,18 @@ void hessian_of(const Stencils& s, BlockRange range, const ChunkBlocks& blocks, 
         frame.to_element(q);
         if (known) {
           const Scalar negative = mode == Negative::absolute ? 1 : 0;
-          entries_of(s).projected(q, data_of(s, block), uniforms_of(s), negative, value, by_q, packed, replaced);
+          entries_of(s).projected(q, data_of(s, block, p), uniforms_of(s), negative, value, by_q, packed, replaced);
           changed += __builtin_popcount(bits(less(splat(0), load(replaced))) & ((1u << count) - 1));
         } else if (in_stretches<S>(s)) {
           if constexpr (S::kDensity)
-            changed += __builtin_popcount(stretch_kernel<S>(s, block).hessian(q, project, mode, value, by_q, packed) &
-                                          ((1u << count) - 1));
+            changed += __builtin_popcount(
+                stretch_kernel<S>(s, block, p).hessian(q, project, mode, value, by_q, packed) & ((1u << count) - 1));
           frame.hessian_to_space(parts, packed);
         } else if (closed_form) {
-          entries_of(s).gradient(q, data_of(s, block), uniforms_of(s), value, by_q);
-          changed += closed_form_hessian<S>(s, block, count, frame, q, mode, packed);
+          entries_of(s).gradient(q, data_of(s, block, p), uniforms_of(s), value, by_q);
+          changed += closed_form_hessian<S>(s, block, p, count, frame, q, mode, packed);
         } else {
-          entries_of(s).hessian(q, data_of(s, block), uniforms_of(s), value, by_q, packed);
+          entries_of(s).hessian(q, data_of(s, block, p), uniforms_of(s), value, by_q, packed);
           frame.hessian_to_space(parts, packed);
           if (project && parts.count > 0) {
             indefinite_parts.add(parts, packed, (1u << count) - 1);

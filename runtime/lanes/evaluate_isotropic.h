@@ -26,8 +26,8 @@ inline void deformation(const Scalar* q, bool displacement, Vector* f) {
 // Hessian of the density at q, projected, packed as in projection.h, in the axes of space. Returns in how many of the
 // first `count` lanes something was changed.
 template <class S>
-inline int closed_form_hessian(const Stencils& s, int block, int count, const Frame<S>& frame, const Scalar* q,
-                               Negative mode, Scalar* packed) {
+inline int closed_form_hessian(const Stencils& s, int block, int quadrature, int count, const Frame<S>& frame,
+                               const Scalar* q, Negative mode, Scalar* packed) {
   if constexpr (!S::kDensity) return 0;
   constexpr int Q = S::kDensity ? S::kVectors : 1;
   Vector f[Q];
@@ -35,7 +35,7 @@ inline int closed_form_hessian(const Stencils& s, int block, int count, const Fr
   alignas(64) Scalar stretch[Q * kWidth], blocks[IsotropicHessian<Q>::kBlocks * kWidth];
   Svd<Q> svd = decompose<Q>(f);
   for (int i = 0; i < Q; ++i) store(stretch + i * kWidth, svd.s[i]);
-  entries_of(s).principal(stretch, data_of(s, block), uniforms_of(s), blocks);
+  entries_of(s).principal(stretch, data_of(s, block, quadrature), uniforms_of(s), blocks);
   IsotropicHessian<Q> h(blocks);
   const unsigned changed = project_isotropic(h, mode) & ((1u << count) - 1);
   if (frame.turns()) {

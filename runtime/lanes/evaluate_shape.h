@@ -69,8 +69,8 @@ auto with_shape(const Stencils& s, F f) {
   return f(Shape<0, 4, Source::kernel>{});
 }
 
-inline const Scalar* data_of(const Stencils& s, int block) {
-  return elements_of(s) + static_cast<long>(block) * s.kernel->elements * kWidth;
+inline const Scalar* data_of(const Stencils& s, int block, int quadrature) {
+  return elements_of(s) + (static_cast<long>(block) * s.quadrature + quadrature) * s.kernel->elements * kWidth;
 }
 
 template <class S, Source = S::kSource>
@@ -182,7 +182,7 @@ inline void prefetch_block(const Stencils& s, int block) {
     const long weights = static_cast<long>(S::kVectors) * (n + 1);
     prefetch(s.weights + block * weights * kWidth, vector * weights);
   }
-  prefetch(data_of(s, block), static_cast<long>(sizeof(Real)) * s.kernel->elements);
+  prefetch(data_of(s, block, 0), static_cast<long>(sizeof(Real)) * s.kernel->elements * s.quadrature);
 }
 
 template <class S>

@@ -42,7 +42,7 @@ struct Stencils {
   // else null.
   const double* frames;
   const double* volumes;   // density: [block][quadrature][W]
-  const double* elements;  // [block][kernel->elements][W]
+  const double* elements;  // [block][quadrature][kernel->elements][W]
   const double* uniforms;  // [kernel->uniforms]
   // Where among the sums of its chunk the 3x3 block of points (a, b <= a) is added, at a*(a + 1)/2 + b of
   // [block][pairs][W], in doubles; behind the last for a pair with a fixed vertex and for padding.

@@ -177,6 +177,7 @@ void TimeStepper::set_lags(const Solve& stage) {
   lagged_dt_.resize(static_cast<size_t>(system_->potential_count()), 0);
   for (int i = 0; i < system_->potential_count(); ++i) {
     Potential& potential = system_->potential(i);
+    potential.set_time(stage.end);
     if (contact_ && contact_->owns(i)) continue;
     const double dt = has_vector_lag(potential, "hat") ? stage.dt : stage.lag_dt;
     double& lagged_dt = lagged_dt_[static_cast<size_t>(i)];
