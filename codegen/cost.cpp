@@ -76,6 +76,7 @@ std::vector<EntryCost> cost_of_entries(const Schedule& s) {
     entries.push_back(counter.count("gradient, far", far_gradient, true, true, size(far_gradient)));
     entries.push_back(counter.count("hessian, far", far_hessian, true, true, size(far_hessian)));
   }
+  if (!s.update.empty()) entries.push_back(counter.count("update", s.update, true, true, size(s.update)));
   if (!s.principal.empty()) entries.push_back(counter.count("principal", s.principal, true, true, size(s.principal)));
   if (s.changed >= 0) {
     const Roots projected = join(join(gradient, s.projected), {s.changed});

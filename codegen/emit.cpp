@@ -125,6 +125,19 @@ std::string input_table(const Module& m) {
   return out + "  {0, 0, 0, 0, 0}};\n";
 }
 
+// The numbers of what the energy renews among the inputs.
+std::vector<int> updated_inputs(const Module& m) {
+  std::vector<int> out;
+  for (const Let& update : m.energy->updates) {
+    int number = 0;
+    for (const Symbol& s : m.energy->symbols) {
+      if (s.name == update.name) out.push_back(number);
+      number += s.role != Role::dof;
+    }
+  }
+  return out;
+}
+
 std::string kernel_table(const Module& m, const OperationCounts& c, VectorType type) {
   const bool density = m.points == 0, principal = !m.principal.empty(), projected = m.changed >= 0;
   std::string weights;
@@ -137,6 +150,8 @@ std::string kernel_table(const Module& m, const OperationCounts& c, VectorType t
   }
   std::string out = input_table(m);
   if (!density) out += fmt::format("static const double weights[] = {{{}}};\n", weights);
+  if (!m.update.empty())
+    out += fmt::format("static const int updates[] = {{{}}};\n", fmt::join(updated_inputs(m), ", "));
   if (!m.parts.empty()) out += fmt::format("static const int parts[] = {{{}}};\n", fmt::join(m.parts, ", "));
   if (!density) out += fmt::format("static const char* const points[] = {{{}}};\n", points);
   const std::string entries =
@@ -147,14 +162,15 @@ std::string kernel_table(const Module& m, const OperationCounts& c, VectorType t
   out += fmt::format(
       "extern \"C\" __attribute__((visibility(\"default\"))) const ErgonKernel ergon_kernel = {{\n"
       "  ERGON_KERNEL_ABI, {}, {}, {}, {}, {}, {}, {}, {},\n  {}, inputs, {}, {}, {}, {}, {}, {},\n  {}, {}, {}, {},\n"
-      "  {}, {}, {}, {},\n  {}, {},\n  {}, {}, {}, {}, {}, {}, {}}};\n",
+      "  {}, {}, {}, {},\n  {}, {},\n  {}, {}, {}, {}, {}, {}, {}, {}, {}, {}}};\n",
       type.lanes, quoted(m.energy->name), quoted(m.case_name), quoted(m.energy->geometry), density ? 1 : 0, m.points,
       m.q_vectors, density ? "0" : "weights", inputs, m.params, m.raw, c.uniforms, c.elements, m.require.size(),
       m.active.size(), int{m.constant_gradient}, int{m.constant_hessian}, int{m.zero_hessian}, int{m.psd_hessian},
       c.value, c.gradient, c.hessian, c.divisions, type.single ? "0, 0, 0, 0, 0, 0" : entries, density ? "0" : "points",
       int{m.displacement}, principal && !type.single ? "principal_entry" : "0", c.principal,
       projected && !type.single ? "projected_entry" : "0", type.single ? "&single" : "0",
-      m.parts.empty() ? "0" : "parts", int{m.stretches});
+      m.parts.empty() ? "0" : "parts", int{m.stretches}, m.energy->updates.size(), m.update.empty() ? "0" : "updates",
+      m.update.empty() ? "0" : "update_entry");
   return out;
 }
 
@@ -176,6 +192,10 @@ Emitted emit(const Module& m, const Schedule& s, VectorType type) {
   const Program& p = s.program;
   const std::string real = type.real();
   if (type.single) check_floats(p, *m.energy);
+  if (type.single && !m.update.empty())
+    throw SourceError({m.energy->file}, fmt::format("{} renews lags, which is not done in single precision; use "
+                                                    "--precision double",
+                                                    m.energy->name));
   Slots slots = assign_slots(s);
   auto text = [&](const std::vector<Output>& outputs) {
     return function_text(p, slots, outputs, false, true, true, "raw", real);
@@ -218,6 +238,7 @@ Emitted emit(const Module& m, const Schedule& s, VectorType type) {
     for (size_t i = 0; i < kept.size(); ++i) kept[i].target = fmt::format("e[{}]", static_cast<int>(i) * type.lanes);
   FunctionText elements = function_text(p, slots, kept, type.single, true, false, "raw");
   FunctionText conditions = text(join(outputs_to("active", s.active), outputs_to("require", s.require)));
+  FunctionText update_text = text(outputs_to("renewed", s.update));
   FunctionText principal_text = text(outputs_to("blocks", s.principal));
   FunctionText projected_text;
   if (s.changed >= 0)
@@ -228,7 +249,8 @@ Emitted emit(const Module& m, const Schedule& s, VectorType type) {
   std::set<std::string> used;
   if (!s.require.empty()) used.insert("v_min");
   if (two_forms) used.insert("lanes_above");
-  std::vector<const FunctionText*> all = {&uniforms, &elements, &conditions, &near, &principal_text, &projected_text};
+  std::vector<const FunctionText*> all = {&uniforms,    &elements,       &conditions,    &near,
+                                          &update_text, &principal_text, &projected_text};
   for (const FunctionText& t : texts) all.push_back(&t);
   for (const FunctionText* f : all)
     count_calls(p, f->instructions, f == &uniforms || (type.single && f == &elements), used);
@@ -265,6 +287,7 @@ Emitted emit(const Module& m, const Schedule& s, VectorType type) {
     out.source += entry(e.name + "_entry", real, e.outputs,
                         dispatch(e, near, m.q_size(), static_cast<int>(m.hessian.size()), type.single));
   }
+  if (!m.update.empty()) out.source += entry("update_entry", real, {"renewed"}, update_text.body);
   if (!m.principal.empty())
     out.source += fmt::format(
         "static void principal_entry(const {0}* s_, const {0}* e_, const {0}* u, {0}* blocks_) {{\n"

@@ -150,11 +150,11 @@ class Writer {
 
   std::string unique(const std::string& name) {
     static const std::set<std::string> taken = {
-        "u",      "e",     "q",        "s",       "blocks",  "projected", "changed", "negative", "V",       "params",
-        "raw",    "value", "gradient", "hessian", "require", "active",    "double",  "int",      "float",   "char",
-        "const",  "if",    "else",     "for",     "while",   "do",        "new",     "delete",   "this",    "and",
-        "or",     "not",   "xor",      "auto",    "long",    "short",     "class",   "struct",   "union",   "void",
-        "return", "case",  "switch",   "default", "break",   "static",    "extern",  "template", "typename"};
+        "u",      "renewed", "e",     "q",        "s",       "blocks",  "projected", "changed", "negative", "V",
+        "params", "raw",     "value", "gradient", "hessian", "require", "active",    "double",  "int",      "float",
+        "char",   "const",   "if",    "else",     "for",     "while",   "do",        "new",     "delete",   "this",
+        "and",    "or",      "not",   "xor",      "auto",    "long",    "short",     "class",   "struct",   "union",
+        "void",   "return",  "case",  "switch",   "default", "break",   "static",    "extern",  "template", "typename"};
     std::string candidate = taken.count(name) ? name + "_" : name;
     while (!names_.insert(candidate).second) candidate += "_";
     return candidate;

@@ -13,7 +13,8 @@ std::vector<NodeId> Module::roots() const {
   std::vector<NodeId> out;
   for (NodeId one : {value, near, far.value, changed})
     if (one >= 0) out.push_back(one);
-  for (const auto* list : {&active, &require, &gradient, &hessian, &principal, &projected, &far.gradient, &far.hessian})
+  for (const auto* list :
+       {&active, &require, &update, &gradient, &hessian, &principal, &projected, &far.gradient, &far.hessian})
     out.insert(out.end(), list->begin(), list->end());
   return out;
 }
@@ -46,6 +47,7 @@ Module lower(const Energy& energy, const std::string& case_name) {
   module.value = parts.value;
   module.active = parts.active;
   module.require = parts.require;
+  module.update = parts.update;
   flatten(module);
   return module;
 }

@@ -17,6 +17,7 @@ struct Module {
   NodeId value = -1;           // J, or J per rest volume
   std::vector<NodeId> active;  // margins, positive where the condition holds
   std::vector<NodeId> require;
+  std::vector<NodeId> update;  // components of Energy::updates, one after the other
 
   // Layout of the inputs: first component of every param in `params`, of rest and lag in the raw element data; symbols
   // in order of declaration, components column by column.

@@ -60,6 +60,7 @@ bool expand_about_rest(Module& module) {
   made.value = rest.no_value ? remainder : g.add(at_rest, remainder);
   for (const int margin : parts.active) made.active.push_back(algebra.direct(margin));
   for (const int margin : parts.require) made.require.push_back(algebra.direct(margin));
+  for (const int component : parts.update) made.update.push_back(algebra.direct(component));
   if (!algebra.polynomial(parts.value)) {
     std::vector<Term> squares;
     for (int i = 0; i < made.q_size(); ++i) squares.push_back({-1, g.power(g.input(Source::q, i), 2)});

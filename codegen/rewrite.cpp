@@ -42,8 +42,8 @@ void rewrite(Module& module, const RewriteRule& rule) {
     if (id >= 0) id = renumbered[static_cast<size_t>(id)];
   };
   for (NodeId* one : {&module.value, &module.near, &module.far.value, &module.changed}) renumber(*one);
-  for (auto* list : {&module.active, &module.require, &module.gradient, &module.hessian, &module.principal,
-                     &module.projected, &module.far.gradient, &module.far.hessian})
+  for (auto* list : {&module.active, &module.require, &module.update, &module.gradient, &module.hessian,
+                     &module.principal, &module.projected, &module.far.gradient, &module.far.hessian})
     for (NodeId& id : *list) renumber(id);
 }
 

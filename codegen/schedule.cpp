@@ -261,6 +261,7 @@ Schedule schedule(Module& module) {
   out.value = scheduler.value(module.value);
   out.active = scheduler.values(module.active);
   out.require = scheduler.values(module.require);
+  out.update = scheduler.values(module.update);
   out.gradient = scheduler.values(module.gradient);
   out.hessian = scheduler.values(module.hessian);
   out.principal = scheduler.values(module.principal);

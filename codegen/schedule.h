@@ -16,7 +16,7 @@ struct Schedule {
   Program program;
   int value = -1;
   int changed = -1;  // of the projection, with `projected`
-  std::vector<int> active, require, gradient, hessian, principal, projected;
+  std::vector<int> active, require, update, gradient, hessian, principal, projected;
   // Set where the module has two forms (codegen/module.h).
   int near = -1, far_value = -1;
   std::vector<int> far_gradient, far_hessian;

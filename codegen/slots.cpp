@@ -7,8 +7,8 @@ Slots assign_slots(const Schedule& s) {
   std::vector<int> roots = {s.value};
   if (s.near >= 0) roots.insert(roots.end(), {s.near, s.far_value});
   if (s.changed >= 0) roots.push_back(s.changed);
-  for (const auto* list :
-       {&s.active, &s.require, &s.gradient, &s.hessian, &s.principal, &s.projected, &s.far_gradient, &s.far_hessian})
+  for (const auto* list : {&s.active, &s.require, &s.update, &s.gradient, &s.hessian, &s.principal, &s.projected,
+                           &s.far_gradient, &s.far_hessian})
     roots.insert(roots.end(), list->begin(), list->end());
 
   // The shortest lifetime among the users of each value; entry points run at Lifetime::state.

@@ -13,7 +13,7 @@
 extern "C" {
 #endif
 
-#define ERGON_KERNEL_ABI 6
+#define ERGON_KERNEL_ABI 7
 
 enum ErgonRole { ERGON_PARAM = 0, ERGON_REST = 1, ERGON_LAG = 2 };
 
@@ -109,6 +109,12 @@ typedef struct ErgonKernel {
      singular values of F (signs as in runtime/lanes/svd3.h), or, with `displacement`, those less 1, and derivatives are
      by these; principal is never 0. runtime/lanes/stretch_frame.h leads from F and back. */
   int stretches;
+
+  /* Lags that the energy renews itself once a step has ended: their numbers among `inputs`, and their new values at the
+     end of the step, one lag after the other: renewed[...][lanes]. 0 without any; never in single precision. */
+  int n_updates;
+  const int* updates;
+  void (*update)(const double* q, const double* e, const double* u, double* renewed);
 } ErgonKernel;
 
 #ifdef __cplusplus

@@ -86,6 +86,12 @@ class Potential {
   void follow(const std::string& name, TimedValues values);
   void set_time(double time);  // s
 
+  // Of a density: F at every point of quadrature of every cell, column by column, in the axes of space.
+  std::vector<double> deformation(const Eigen::Matrix3Xd& x) const;
+  // New values of the lags that the energy renews itself, by name, one set for every stencil or point of quadrature;
+  // from what it sees at positions x and the lags as they are.
+  StencilData renewed(const Eigen::Matrix3Xd& x) const;
+
   struct Impl;
   std::shared_ptr<Impl> impl;
 };

@@ -66,15 +66,21 @@ void check_lags(const Energy& energy, const Place& place) {
     const auto of_point = [&](const Symbol* dof) {
       return lag->name == dof->name + "hat" || lag->name == dof->name + "lag";
     };
+    if (energy.renews(lag->name)) continue;
     const std::vector<const Symbol*> dofs = energy.with_role(Role::dof);
-    if (lag->name != "dt" && std::none_of(dofs.begin(), dofs.end(), of_point))
+    if (energy.kind == Energy::Kind::density && lag->name != "dt" && lag->name != "Flag")
+      throw SourceError(place,
+                        fmt::format("a scene does not renew the lag '{}' of {}: of a density it knows dt and Flag, "
+                                    "and those that the density renews itself by `update`",
+                                    lag->name, energy.name));
+    if (energy.kind != Energy::Kind::density && lag->name != "dt" && std::none_of(dofs.begin(), dofs.end(), of_point))
       throw SourceError(place, fmt::format("a scene does not renew the lag '{}' of {}: it knows dt, xhat and xlag",
                                            lag->name, energy.name));
   }
 }
 
 void check_supported(const Energy& energy, const Place& place) {
-  if (energy.kind == Energy::Kind::density) return;
+  if (energy.kind == Energy::Kind::density) return check_lags(energy, place);
   const std::vector<std::string> kinds = stencil_kinds();
   if (std::find(kinds.begin(), kinds.end(), energy.geometry) == kinds.end())
     throw SourceError(place, fmt::format("{} is an energy of a {}; an object carries densities, and energies of a {}",

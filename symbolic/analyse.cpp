@@ -9,6 +9,7 @@
 #include "symbolic/declaration.h"
 #include "symbolic/functions.h"
 #include "symbolic/other_names.h"
+#include "symbolic/stretches.h"
 #include "symbolic/typing.h"
 
 namespace ergon {
@@ -106,6 +107,7 @@ class Analysis {
     }
     for (const Condition& condition : energy_.active) check(condition, known);
     for (const Condition& condition : energy_.require) check(condition, known);
+    for (const Let& update : energy_.updates) renewed(update, typed(*update.expression, known));
     if (energy_.kind == Energy::Kind::distance) return gap_of_a_distance(known);
     const Quantity value = typed(*energy_.value, known);
     const Place place = start_of(*energy_.value);
@@ -114,6 +116,38 @@ class Analysis {
     if (!value.any_unit && value.unit != value_unit(energy_))
       throw SourceError(
           place, fmt::format("the value of {} expects {}, found {}", what(), value_text(), to_string(value.unit)));
+  }
+
+  // `update` gives a lag another value of its kind.
+  void renewed(const Let& update, const Quantity& found) const {
+    const Symbol* lag = energy_.find(update.name);
+    if (lag == nullptr || lag->role != Role::lag) {
+      std::vector<std::string> lags;
+      for (const Symbol* known : energy_.with_role(Role::lag)) lags.push_back(known->name);
+      throw SourceError(update.place,
+                        fmt::format("`update` renews a lag, and '{}' is none{}; it is declared by `lag {} "
+                                    "UNIT`",
+                                    update.name, did_you_mean(update.name, lags), update.name));
+    }
+    const auto same = [&](const Let& other) { return other.name == update.name; };
+    const auto first = std::find_if(energy_.updates.begin(), energy_.updates.end(), same);
+    if (&*first != &update)
+      throw SourceError(update.place, fmt::format("'{}' is renewed twice; the first time in line {}", update.name,
+                                                  first->place.line));
+    if (!lag->range.contains(0))
+      throw SourceError(lag->place,
+                        fmt::format("the lag '{}' is renewed by `update` and starts at 0, which its range {} "
+                                    "does not hold",
+                                    lag->name, to_string(lag->range)));
+    if (lag->shape != found.shape)
+      throw SourceError(start_of(*update.expression), fmt::format("'{}' is a {}, found {}", lag->name,
+                                                                  to_string(lag->shape), to_string(found.shape)));
+    const std::string conflict = unit_conflict({lag->shape, lag->unit}, found);
+    if (!conflict.empty())
+      throw SourceError(start_of(*update.expression), fmt::format("'{}' has another unit: {}", lag->name, conflict));
+    if (uses_stretches(energy_))
+      throw SourceError(update.place,
+                        "a density that calls `stretches` renews no lags: it sees its F by these alone; write it in F");
   }
 
   // A distance gives `gap2`, `gap` or both, and may give a `weight` of the energy.

@@ -34,6 +34,7 @@ struct Elaborated {
   S value;
   std::vector<S> active;   // margins: positive where the condition holds
   std::vector<S> require;  // margins
+  std::vector<S> update;   // components of the new values of Energy::updates, one after the other
 };
 
 // `case_name` must be one of energy.cases, or "" when the energy has none.

@@ -51,9 +51,13 @@ class Elaborator {
       names_.insert_or_assign(let.name, std::move(t));
     }
     S value = scalar(*energy.value);
-    Elaborated<S> result{std::move(value), {}, {}};
+    Elaborated<S> result{std::move(value), {}, {}, {}};
     for (const Condition& c : energy.active) result.active.push_back(margin(c));
     for (const Condition& c : energy.require) result.require.push_back(margin(c));
+    for (const Let& update : energy.updates) {
+      const T t = tensor(*update.expression);
+      result.update.insert(result.update.end(), t.at.begin(), t.at.end());
+    }
     return result;
   }
 

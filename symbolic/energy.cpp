@@ -1,5 +1,7 @@
 #include "symbolic/energy.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include <array>
@@ -18,6 +20,10 @@ std::string to_string(const Range& range) {
   auto bound = [](double v) { return std::isinf(v) ? std::string(v < 0 ? "-inf" : "inf") : fmt::format("{}", v); };
   return fmt::format("{}{}, {}{}", range.lower_open ? '(' : '[', bound(range.lower), bound(range.upper),
                      range.upper_open ? ')' : ']');
+}
+
+bool Energy::renews(std::string_view symbol_name) const {
+  return std::any_of(updates.begin(), updates.end(), [&](const Let& update) { return update.name == symbol_name; });
 }
 
 const Symbol* Energy::find(std::string_view symbol_name) const {

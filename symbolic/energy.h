@@ -73,6 +73,8 @@ struct Energy {
   std::vector<std::string> cases;
   std::vector<Condition> active;  // whoever builds the list of stencils keeps those where all hold
   std::vector<Condition> require;
+  // Lags that the energy renews itself when a step has ended, by expressions of what it then sees; they start at 0.
+  std::vector<Let> updates;
   ExpressionPtr value;       // null in a distance
   std::string part_of;       // `part TEXT`: the sum that it is sound in; "" for one that is sound alone
   bool fixed_frame = false;  // `frame fixed`: the author states that it is not invariant under rotation
@@ -80,6 +82,7 @@ struct Energy {
   std::string file;
 
   bool complete() const { return kind == Kind::density || kind == Kind::stencil; }
+  bool renews(std::string_view symbol_name) const;
   const Symbol* find(std::string_view symbol_name) const;
   std::vector<const Symbol*> with_role(Role role) const;
 };

@@ -16,7 +16,7 @@ namespace {
 const std::vector<std::string> headers = {"density", "energy", "barrier", "distance"};
 const std::vector<std::string> keywords = {"density", "energy", "barrier", "distance", "cite",   "param",
                                            "lag",     "rest",   "dof",     "let",      "active", "require",
-                                           "frame",   "value",  "case",    "part"};
+                                           "frame",   "value",  "case",    "part",     "update"};
 constexpr const char* any_header =
     "`density NAME GEOMETRY`, `energy NAME STENCIL`, `barrier NAME` or `distance NAME STENCIL`";
 
@@ -145,12 +145,14 @@ class EnergyParser {
     if (word == "frame") return frame(statement);
     if (word == "part") return part(statement, end);
 
-    if (word == "let" || word == "case" || word == "active" || word == "require" || word == "value") {
+    if (word == "let" || word == "case" || word == "active" || word == "require" || word == "value" ||
+        word == "update") {
       ExpressionParser parser(tokenise(statement, end));
       if (word == "let") let(parser);
       if (word == "case") case_let(parser);
       if (word == "active" || word == "require") condition(parser, word, place);
       if (word == "value") value(parser, place);
+      if (word == "update") update(parser, place);
       return;
     }
     const size_t blank = std::min(statement.text.find_first_of(" \t"), statement.text.size());
@@ -215,6 +217,16 @@ class EnergyParser {
     auto& cases = energy_.cases;
     if (std::find(cases.begin(), cases.end(), case_name.text) == cases.end()) cases.push_back(case_name.text);
     finish_let(parser, name, case_name.text);
+  }
+
+  void update(ExpressionParser& parser, const Place& place) {
+    if (!energy_.complete())
+      throw SourceError(place,
+                        "a barrier or distance renews nothing; `update` belongs to a density or a stencil energy");
+    const Token name = parser.take_name("the lag to renew");
+    parser.take_sign("=", fmt::format("after '{}'", name.text).c_str());
+    energy_.updates.push_back({name.text, "", parser.expression(), name.place});
+    parser.finish();
   }
 
   void finish_let(ExpressionParser& parser, const Token& name, const std::string& case_name) {

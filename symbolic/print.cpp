@@ -101,6 +101,8 @@ std::string formula_text(const Energy& energy) {
   for (const Condition& c : energy.active) text += fmt::format("active {} < {}\n", to_text(*c.left), to_text(*c.right));
   for (const Condition& c : energy.require)
     text += fmt::format("require {} < {}\n", to_text(*c.left), to_text(*c.right));
+  for (const Let& update : energy.updates)
+    text += fmt::format("update {} = {}\n", update.name, to_text(*update.expression));
   return energy.value ? text + "value " + to_text(*energy.value) + "\n" : text;
 }
 

@@ -142,6 +142,9 @@ std::string formula_latex(const Energy& energy) {
     text += to_latex(*c.left) + " &< " + to_latex(*c.right) + " && \\text{(active)} \\\\\n";
   for (const Condition& c : energy.require)
     text += to_latex(*c.left) + " &< " + to_latex(*c.right) + " && \\text{(required)} \\\\\n";
+  for (const Let& update : energy.updates)
+    text += name_latex(update.name, !update.expression->shape.scalar()) + " &\\leftarrow " +
+            to_latex(*update.expression) + " \\\\\n";
   if (energy.value)
     text +=
         (energy.kind == Energy::Kind::density ? "\\Psi" : "E") + std::string(" &= ") + to_latex(*energy.value) + "\n";

@@ -140,6 +140,9 @@ std::string formula_mathml(const Energy& energy) {
         line(name_mathml(let.name, !let.expression->shape.scalar()), "=", to_mathml(*let.expression), let.case_name);
   for (const Condition& c : energy.active) rows += line(to_mathml(*c.left), "&lt;", to_mathml(*c.right), "active");
   for (const Condition& c : energy.require) rows += line(to_mathml(*c.left), "&lt;", to_mathml(*c.right), "required");
+  for (const Let& update : energy.updates)
+    rows += line(name_mathml(update.name, !update.expression->shape.scalar()), "←", to_mathml(*update.expression),
+                 "after each step");
   if (energy.value)
     rows += line(energy.kind == Energy::Kind::density ? "<mi>Ψ</mi>" : "<mi>E</mi>", "=", to_mathml(*energy.value), "");
   return "<math xmlns=\"http://www.w3.org/1998/Math/MathML\" display=\"block\"><mtable>\n" + rows +

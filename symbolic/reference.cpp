@@ -50,6 +50,7 @@ ReferenceValue evaluate_reference_at(const Energy& energy, const std::string& ca
   }
   for (const auto& margin : result.active) reference.active.push_back(to_double(margin.value));
   for (const auto& margin : result.require) reference.require.push_back(to_double(margin.value));
+  for (const auto& component : result.update) reference.update.push_back(to_double(component.value));
   return reference;
 }
 

@@ -20,6 +20,7 @@ struct ReferenceValue {
   std::vector<double> hessian;   // n x n, column by column; each entry correctly rounded from `digits` digits
   std::vector<double> active;    // margins
   std::vector<double> require;   // margins
+  std::vector<double> update;    // of Energy::updates, one after the other
 };
 
 // What has no real and finite result (log of a negative number, division by zero) is NaN. Throws std::invalid_argument

@@ -41,7 +41,7 @@ bool has_rest_state(const Energy& energy) {
   return std::all_of(dofs.begin(), dofs.end(), [&](const Symbol* dof) { return rest_position(energy, *dof); });
 }
 
-// Where points were when the step began is there too: nothing moves.
+// Where points were when the step began is there too: nothing moves. What an energy renews itself is as it starts.
 void put_at_rest(const Energy& energy, ExactInputs& inputs) {
   for (const Symbol* dof : energy.with_role(Role::dof)) {
     inputs[dof->name] =
@@ -49,6 +49,8 @@ void put_at_rest(const Energy& energy, ExactInputs& inputs) {
     const Symbol* before = energy.find(dof->name + "lag");
     if (before != nullptr && before->shape == dof->shape) inputs[before->name] = inputs[dof->name];
   }
+  for (const Let& update : energy.updates)
+    inputs[update.name].assign(static_cast<size_t>(energy.find(update.name)->shape.size()), Rational(0));
 }
 
 // A random undeformed state whose `require` conditions hold (`active` is for the list of stencils to see to).
@@ -104,6 +106,8 @@ bool gradient_vanishes_exactly(const Energy& energy, const std::string& case_nam
   try {
     ExactInputs values = state;
     if (energy.kind == Energy::Kind::density) values = {{"F", state.at("F")}};
+    for (const Symbol* lag : energy.with_role(Role::lag))
+      if (lag->name == "Flag" || energy.renews(lag->name)) values[lag->name] = state.at(lag->name);
     GinacAlgebra numbers(values);
     JetAlgebra<GinacAlgebra> jets(energy, numbers, JetAlgebra<GinacAlgebra>::Order::first);
     return exactly_zero(elaborate(energy, case_name, jets).value.gradient);

@@ -82,9 +82,14 @@ std::map<std::string, std::vector<double>> usual_data(const Energy& energy,
                                                       const std::map<std::string, std::vector<double>>& given) {
   std::map<std::string, std::vector<double>> data = given;
   for (const Symbol& symbol : energy.symbols) {
-    if (symbol.role == Role::dof || data.contains(symbol.name) || follows_a_dof(energy, symbol)) continue;
+    const bool density = energy.kind == Energy::Kind::density;
+    if (symbol.role == Role::dof || data.contains(symbol.name)) continue;
+    if (!density && follows_a_dof(energy, symbol)) continue;
     std::vector<double> values(static_cast<size_t>(symbol.shape.size()), 0.0);
-    values[0] = usual_value(symbol);
+    if (density && symbol.name == "Flag")
+      for (size_t i = 0; i < values.size(); i += 4) values[i] = 1;  // a step that begins undeformed
+    else if (!energy.renews(symbol.name))
+      values[0] = usual_value(symbol);
     data[symbol.name] = values;
   }
   return data;

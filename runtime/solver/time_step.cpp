@@ -45,6 +45,7 @@ StepRecord TimeStepper::step(State& state) {
     const Stopwatch watch(record.seconds.total);
     record.dt = options_.dt;
 
+    set_internal(state);
     const Integrator integrator = integrator_for(state);
     if (known_.x.cols() == 0 || known_.x != state.x) energies(state);
     std::vector<Moment> moments = known_moments(state, integrator);
@@ -183,9 +184,25 @@ void TimeStepper::set_lags(const Solve& stage) {
     double& lagged_dt = lagged_dt_[static_cast<size_t>(i)];
     if (lagged_dt != dt && has_lag(potential.kernel(), "dt")) potential.set_lag("dt", {dt});
     lagged_dt = dt;
+    if (potential.kernel().density && has_lag(potential.kernel(), "Flag"))
+      potential.set_lag("Flag", potential.deformation(stage.xlag));
     if (potential.kernel().density || !potential.kernel().point_names) continue;
     set_vector_lags(potential, "hat", stage.xhat);
     set_vector_lags(potential, "lag", stage.xlag);
+  }
+}
+
+void TimeStepper::set_internal(const State& state) {
+  for (int i = 0; i < system_->potential_count(); ++i) {
+    Potential& potential = system_->potential(i);
+    const ErgonKernel& kernel = potential.kernel();
+    for (int u = 0; u < kernel.n_updates; ++u) {
+      const ErgonInput& lag = kernel.inputs[kernel.updates[u]];
+      if (state.internal.empty())
+        potential.set_lag(lag.name, std::vector<double>(static_cast<size_t>(lag.rows * lag.cols), 0.0));
+      else
+        potential.set_lag(lag.name, state.internal.at(static_cast<size_t>(i)).at(lag.name));
+    }
   }
 }
 
@@ -252,7 +269,13 @@ ContactForces TimeStepper::forces(const Eigen::Matrix3Xd& x) {
   return forces;
 }
 
-void TimeStepper::advance(State& state, const Moment& end) const {
+void TimeStepper::advance(State& state, const Moment& end) {
+  const auto renews = [&](int i) { return system_->potential(i).kernel().n_updates > 0; };
+  for (int i = 0; i < system_->potential_count(); ++i) {
+    if (!renews(i)) continue;
+    state.internal.resize(static_cast<size_t>(system_->potential_count()));
+    state.internal[static_cast<size_t>(i)] = system_->potential(i).renewed(end.x);
+  }
   state.last_x = std::move(state.x);
   state.last_v = std::move(state.v);
   state.last_dt = options_.dt;

@@ -9,6 +9,9 @@
 // mass/(2*dt^2)*|x - xhat|^2 is the stage's inertia. With `lag` added: the position from which (x - xlag)/dt is the
 // velocity at the end of the stage, with the `dt` of potentials without `hat`; for implicit Euler both are those of the
 // step. A potential with the lag dt is a term of the incremental potential and not stored energy.
+//
+// A density has the lag `Flag` in place of positions: its F there. Lags that an energy renews itself are part of the
+// state; they change once a step is accepted, by what the energy sees at its end with the lags of the last stage.
 
 #include <Eigen/Core>
 #include <limits>
@@ -32,7 +35,9 @@ struct State {
   // Of the start of the last step, for two-step integrators; empty before the first one.
   Eigen::Matrix3Xd last_x, last_v;
   double last_dt = 0;  // s
-  double time = 0;     // s
+  // What energies renew themselves, by potential; empty where no step has ended yet: then it is 0.
+  std::vector<StencilData> internal;
+  double time = 0;  // s
   long step = 0;
 };
 
@@ -166,10 +171,11 @@ class TimeStepper {
   void judge_path(const State& state, const Eigen::Matrix3Xd& x, bool was_stable, NewtonResult& result);
   Eigen::Matrix3Xd free_acceleration(const State& state);
   void set_lags(const Solve& stage);
+  void set_internal(const State& state);
   void begin_contact(const Solve& stage, const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& v, StepRecord& record);
   NewtonResult solve(const Solve& stage, Eigen::Matrix3Xd& x, StepRecord& record);
   ContactForces forces(const Eigen::Matrix3Xd& x);
-  void advance(State& state, const Moment& end) const;
+  void advance(State& state, const Moment& end);
   void report(const State& state, const NewtonResult& result, StepRecord& record);
   bool is_stored(int potential) const;
   double kinetic_energy(const Eigen::Matrix3Xd& v) const;

@@ -8,6 +8,22 @@
 
 namespace ergon {
 
+namespace {
+
+// The energy at the end of a step, with what energies renewed then.
+Evaluation evaluate_renewed(System& system, const State& state, const Evaluation& before) {
+  bool renewed = false;
+  for (size_t i = 0; i < state.internal.size(); ++i) {
+    for (const auto& [lag, values] : state.internal[i]) {
+      system.potential(static_cast<int>(i)).set_lag(lag, values);
+      renewed = true;
+    }
+  }
+  return renewed ? system.value(state.x) : before;
+}
+
+}  // namespace
+
 void TimeStepper::report(const State& state, const NewtonResult& result, StepRecord& record) {
   record.step = state.step;
   record.time = state.time;
@@ -18,7 +34,9 @@ void TimeStepper::report(const State& state, const NewtonResult& result, StepRec
   record.step_speed = result.step_speed;
   record.skipped = skipped_parts();
   record.load_factor = load_factor(state.time);
-  record.energy = record.accepted ? energies_of(result.evaluation, state.v) : energies(state);
+  // What energies renewed changes what is stored: the difference is dissipated, as by plastic flow.
+  const Evaluation after = record.accepted ? evaluate_renewed(*system_, state, result.evaluation) : Evaluation{};
+  record.energy = record.accepted ? energies_of(after, state.v) : energies(state);
   if (contact_) {
     const ContactStatus status = contact_->status(state.x);
     record.contacts = status.active;
@@ -26,8 +44,14 @@ void TimeStepper::report(const State& state, const NewtonResult& result, StepRec
     record.barrier_stiffness = status.stiffness;
   }
   if (!record.accepted) return;
-  record.budget = budget_of(state, record, result.evaluation);
-  known_ = {state.x, result.evaluation.by_potential};
+  record.budget = budget_of(state, record, after);
+  for (int i = 0; i < system_->potential_count(); ++i) {
+    const auto at = static_cast<size_t>(i);
+    const double flow = is_stored(i) ? result.evaluation.by_potential[at] - after.by_potential[at] : 0;
+    record.budget.damping += flow;
+    record.budget.integrator -= flow;
+  }
+  known_ = {state.x, after.by_potential};
   for (int v = 0; v < system_->vertices(); ++v) {
     const Eigen::Vector3d p = mass_[v] * state.v.col(v), x = state.x.col(v);
     record.momentum.linear += p;
@@ -46,6 +70,7 @@ double TimeStepper::kinetic_energy(const Eigen::Matrix3Xd& v) const {
 
 // Lags and contact of a state that nothing was stepped to.
 void TimeStepper::prepare_at(const State& state) {
+  set_internal(state);
   set_lags({state.x, options_.dt, state.x, options_.dt, state.time});
   if (!contact_) return;
   contact_->begin_step(state.x, state.v, options_.dt);

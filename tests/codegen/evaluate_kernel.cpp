@@ -1,5 +1,6 @@
 #include "tests/codegen/evaluate_kernel.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <new>
 
@@ -46,6 +47,13 @@ std::vector<std::vector<double>> chain(const ErgonKernel& k, int n) {
   return j;
 }
 
+// Numbers that the kernel renews.
+int updated(const ErgonKernel& k) {
+  int n = 0;
+  for (int i = 0; i < k.n_updates; ++i) n += k.inputs[k.updates[i]].rows * k.inputs[k.updates[i]].cols;
+  return n;
+}
+
 }  // namespace
 
 std::vector<int> test_widths() {
@@ -70,7 +78,7 @@ std::vector<KernelValue> evaluate_kernel(const Energy& energy, const ErgonKernel
   const int w = k.lanes, m = 3 * k.q_vectors;
   Lanes params(k.params), u(k.uniforms), raw(k.raw * w), e(k.elements * w), q(m * w), value(w), require(w),
       gradient(m * w), hessian(m * (m + 1) / 2 * w), clamped(m * (m + 1) / 2 * w), absolute(m * (m + 1) / 2 * w),
-      changed(2 * w);
+      changed(2 * w), renewed(std::max(updated(k), 1) * w);
   std::vector<KernelValue> out;
   for (size_t first = 0; first < states.size(); first += static_cast<size_t>(w)) {
     int n = 0;
@@ -99,6 +107,7 @@ std::vector<KernelValue> evaluate_kernel(const Energy& energy, const ErgonKernel
     k.prepare_elements(raw.get(), u.get(), e.get());
     lanes::lane_operations(w).evaluate_at(k, q.get(), e.get(), u.get(), value.get(), require.get(), gradient.get(),
                                           hessian.get());
+    if (k.update != nullptr) k.update(q.get(), e.get(), u.get(), renewed.get());
     for (int mode = 0; mode < 2 && k.projected != nullptr; ++mode)
       k.projected(q.get(), e.get(), u.get(), mode, value.get(), gradient.get(), (mode ? absolute : clamped).get(),
                   changed.get() + mode * w);
@@ -106,6 +115,7 @@ std::vector<KernelValue> evaluate_kernel(const Energy& energy, const ErgonKernel
       KernelValue v;
       v.value = value[lane];
       v.require = require[lane];
+      for (int i = 0; i < updated(k); ++i) v.update.push_back(renewed[i * w + lane]);
       v.gradient.assign(static_cast<size_t>(n), 0);
       v.hessian.assign(static_cast<size_t>(n * n), 0);
       v.q_hessian.assign(static_cast<size_t>(m * (m + 1) / 2), 0);

@@ -11,6 +11,7 @@ namespace ergon::testing {
 struct KernelValue {
   double value = 0;
   double require = 0;
+  std::vector<double> update;     // new values of what the energy renews, one after the other
   std::vector<double> gradient;   // over all dof components
   std::vector<double> hessian;    // n x n, column by column
   std::vector<double> q_hessian;  // lower triangle packed by rows

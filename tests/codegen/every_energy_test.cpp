@@ -70,7 +70,7 @@ class EveryEnergy : public ::testing::TestWithParam<Case> {
 
   // How much results change, per unit of relative change of all inputs: what rounding of the inputs alone would do.
   struct Sensitivity {
-    double value = 0, gradient = 0, hessian = 0;
+    double value = 0, gradient = 0, hessian = 0, update = 0;
   };
   Sensitivity sensitivity(const Inputs& inputs, const ReferenceValue& at) {
     constexpr double step = 1e-7;
@@ -85,6 +85,7 @@ class EveryEnergy : public ::testing::TestWithParam<Case> {
       out.value = std::max(out.value, std::abs(near.value - at.value) / step);
       out.gradient = std::max(out.gradient, distance(near.gradient, at.gradient) / step);
       out.hessian = std::max(out.hessian, distance(near.hessian, at.hessian) / step);
+      out.update = std::max(out.update, distance(near.update, at.update) / step);
     }
     return out;
   }
@@ -107,6 +108,7 @@ TEST_P(EveryEnergy, AgreesWithFiftyDigits) {
         << state.kind;
     EXPECT_LE(distance(got.gradient, exact.gradient), few * rounding * (g + s.gradient + h * x)) << state.kind;
     EXPECT_LE(distance(got.hessian, exact.hessian), few * rounding * (h + s.hessian)) << state.kind;
+    EXPECT_LE(distance(got.update, exact.update), few * rounding * (norm(exact.update) + s.update)) << state.kind;
     EXPECT_GT(got.require, 0) << state.kind;
   }
 }

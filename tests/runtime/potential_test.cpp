@@ -136,7 +136,7 @@ TEST(Potential, RefusesKernelsItCannotEvaluate) {
   EXPECT_EQ(message_of([&] {
               Potential::on_mesh("block", {nullptr, &old}, mesh, 0, kStiff);
             }),
-            "potential 'block': the kernel of neo has ABI 0, expected 6; compile it again");
+            "potential 'block': the kernel of neo has ABI 0, expected 7; compile it again");
   ErgonKernel large = *kernel_of<SpringLaw>(1).table;
   large.q_vectors = 5;
   EXPECT_EQ(message_of([&] {
