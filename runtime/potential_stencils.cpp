@@ -235,6 +235,10 @@ Potential Potential::on_combinations(std::string name, Kernel kernel, int points
   if (points < 1 || points > lanes::kMaxCombined) {
     d.fail(fmt::format("combinations of {} points; 1 to {} can be evaluated", points, lanes::kMaxCombined));
   }
+  if (d.kernel->q_vectors > lanes::kMaxCombinedVectors) {
+    d.fail(fmt::format("combinations for {} vectors of q; at most {} can be evaluated", d.kernel->q_vectors,
+                       lanes::kMaxCombinedVectors));
+  }
   d.combined = true;
   d.points = d.listed = points;
   d.used.resize(static_cast<size_t>(points));

@@ -33,6 +33,7 @@ bool is_mass(const Energy& energy, const Symbol& rest) {
 }
 
 std::string unit_of(const RestSize& size) {
+  if (size.dimension() == 0) return "1";
   return size.dimension() == 1 ? "m" : fmt::format("m^{}", size.dimension());
 }
 
@@ -93,14 +94,16 @@ void check_supported(const Energy& energy, const Place& place) {
   check_lags(energy, place);
 }
 
-StencilData rest_data(const Energy& energy, const std::vector<int>& stencils, const BuiltScene& built) {
+// The stencils are numbered as in the body's mesh.
+StencilData rest_data(const Energy& energy, const std::vector<int>& stencils, const Body& body,
+                      const BuiltScene& built) {
   StencilData out;
   const std::vector<RestSize> sizes = rest_sizes(energy.geometry);
   for (const Symbol* rest : energy.with_role(Role::rest)) {
     if (is_mass(energy, *rest))
-      for (const int vertex : stencils) out["mass"].push_back(built.mass[vertex]);
+      for (const int vertex : stencils) out["mass"].push_back(built.mass[body.first_vertex + vertex]);
     for (const RestSize& size : sizes)
-      if (is_size(size, *rest)) out[size.name] = rest_size_of(size, energy.geometry, stencils, built.start.x);
+      if (is_size(size, *rest)) out[size.name] = rest_size_of(size, energy.geometry, stencils, body.ordered);
   }
   return out;
 }
@@ -112,8 +115,8 @@ Potential object_potential(const UsedLaw& law, const Kernel& kernel, const Body&
       return Potential::on_mesh(energy.name, kernel, body.ordered, body.first_vertex, law.params, body.quadrature,
                                 law.rest);
     std::vector<int> stencils = stencils_on_mesh(energy.geometry, body.ordered);
+    StencilData rest = rest_data(energy, stencils, body, built);
     for (int& vertex : stencils) vertex += body.first_vertex;
-    StencilData rest = rest_data(energy, stencils, built);
     rest.insert(law.rest.begin(), law.rest.end());
     return Potential::on_stencils(energy.name, kernel, stencils, built.start.x, law.params, rest);
   };

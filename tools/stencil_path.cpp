@@ -72,6 +72,8 @@ std::vector<StencilPath> stencil_paths(const std::string& stencil) {
                return flat({o, x});
              }}};
   if (stencil == "hinge") return {turned({-0.5 * x, 0.5 * x, y}, -y, -z, 2.5)};
+  if (stencil == "patch")  // flat, and the last triangle turns about its edge
+    return {turned({-0.5 * x, 0.5 * x, y, x + 0.5 * y, -x + 0.5 * y}, -y, -z, 2.5)};
   if (stencil == "corner") return {turned({-x, o}, x, y, 2.5)};
   if (stencil == "triangle") return {turned({-x, o}, x, y, 2.5), scaled({o, x, y}), apart({o, x, y}, 3)};
   if (stencil == "tetrahedron") return {scaled({o, x, y, z})};

@@ -97,6 +97,20 @@ require  norm2(cross(E, X3 - X0)) > 0
 let      bend = dihedral(x0, x1, x2, x3) - dihedral(X0, X1, X2, X3)      # in radians
 value    3*k*norm2(E)/area*bend^2
 )"},
+      {"patch", "energy of a triangle and those across its edges",
+       R"(# Bending: resists what lies across the edges of a triangle coming nearer. (This line is the summary.)
+energy   NAME   patch
+# x3, x4, x5 lie across the edges opposite to x0, x1, x2; at a border they are any points near by, and `inner` is 0.
+dof      x0 x1 x2 x3 x4 x5                     m                # the points, vectors of 3
+rest     X0[3] X1[3] X2[3] X3[3] X4[3] X5[3]   m                rest positions    # named like a dof with a capital
+rest     inner0 inner1 inner2                  1   [0, 1]       1 where there is a triangle across, otherwise 0
+param    k                                     N/m (0, inf)     stiffness         # a name, its unit, its range, help
+let      area2 = norm(cross(X1 - X0, X2 - X0))                  # twice the area at rest
+require  area2 > 0
+let      d = inner0*(x3 - x0) + inner1*(x4 - x1) + inner2*(x5 - x2)
+let      D = inner0*(X3 - X0) + inner1*(X4 - X1) + inner2*(X5 - X2)
+value    k/area2*(norm2(d) - norm2(D))^2
+)"},
       {"point_point", "energy of two points that are not joined by an edge",
        R"(# Holds two points together. (This line is the summary: say what the law is for.)
 energy   NAME   point_point

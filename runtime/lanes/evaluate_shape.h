@@ -66,7 +66,7 @@ auto with_shape(const Stencils& s, F f) {
   }
   if (vectors == 2) return points == 3 ? f(Shape<3, 2, Source::kernel>{}) : f(Shape<0, 2, Source::kernel>{});
   if (vectors == 3) return points == 4 ? f(Shape<4, 3, Source::kernel>{}) : f(Shape<0, 3, Source::kernel>{});
-  return f(Shape<0, 4, Source::kernel>{});
+  return vectors == 4 ? f(Shape<0, 4, Source::kernel>{}) : f(Shape<6, 5, Source::kernel>{});
 }
 
 inline const Scalar* data_of(const Stencils& s, int block, int quadrature) {

@@ -11,7 +11,8 @@ namespace ergon::lanes {
 
 constexpr int kMaxPoints = 27;    // of a stencil or element
 constexpr int kMaxCombined = 12;  // points of a stencil with weights of its own
-constexpr int kMaxVectors = 4;    // 3-vectors in q
+constexpr int kMaxVectors = 5;    // 3-vectors in q
+constexpr int kMaxCombinedVectors = 4;
 constexpr int kProjectClamp = 0;  // what is done to negative eigenvalues; the order of ergon::Projection
 constexpr int kProjectAbsolute = 1;
 constexpr int kProjectNone = 2;

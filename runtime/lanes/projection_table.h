@@ -4,7 +4,7 @@
 namespace ergon::lanes {
 
 struct ProjectionTable {
-  static constexpr int kLargest = 12;
+  static constexpr int kLargest = 15;
   int lanes = 0;
   // Indexed by N; see definite<N> and project_lanes<N> in runtime/lanes/projection.h.
   double definite_tolerance[kLargest + 1] = {};

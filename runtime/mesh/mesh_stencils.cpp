@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "runtime/error.h"
@@ -88,6 +89,87 @@ std::vector<int> hinges_of(const Mesh& mesh) {
 
 std::vector<int> cells_of(const Mesh& mesh) { return mesh.cells; }
 
+std::array<int, 3> sorted(int a, int b, int c) {
+  std::array<int, 3> out = {a, b, c};
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+// Around every vertex, the vertices that it shares a triangle with, ascending.
+std::vector<std::vector<int>> neighbours_of(const Mesh& mesh) {
+  std::vector<std::vector<int>> around(static_cast<size_t>(mesh.X.cols()));
+  for (size_t start = 0; start < mesh.cells.size(); start += 3) {
+    for (size_t i = 0; i < 3; ++i) {
+      for (size_t j = 1; j < 3; ++j)
+        around[static_cast<size_t>(mesh.cells[start + i])].push_back(mesh.cells[start + (i + j) % 3]);
+    }
+  }
+  for (std::vector<int>& others : around) {
+    std::sort(others.begin(), others.end());
+    others.erase(std::unique(others.begin(), others.end()), others.end());
+  }
+  return around;
+}
+
+// Completes a patch of triangle and neighbours (-1: none) by the nearest vertices that it does not name yet.
+void fill_patch(int* patch, const std::vector<std::vector<int>>& around) {
+  std::vector<int> reached(patch, patch + 3);
+  size_t next = 0;
+  const auto named = [&](int v) { return std::find(patch, patch + 6, v) != patch + 6; };
+  for (int* missing = std::find(patch, patch + 6, -1); missing != patch + 6;
+       missing = std::find(patch, patch + 6, -1)) {
+    while (next < reached.size() && named(reached[next])) {
+      for (const int v : around[static_cast<size_t>(reached[next])])
+        if (std::find(reached.begin(), reached.end(), v) == reached.end()) reached.push_back(v);
+      ++next;
+    }
+    if (next == reached.size())
+      throw InputError(
+          fmt::format("a patch names 6 vertices; the triangle of vertices {}, {}, {} is connected to fewer: "
+                      "refine the mesh",
+                      patch[0], patch[1], patch[2]));
+    *missing = reached[next];
+  }
+}
+
+std::vector<int> patches_of(const Mesh& mesh) {
+  std::map<std::array<int, 2>, std::vector<int>> thirds;  // by edge, lower vertex first: corners opposite to it
+  for (size_t start = 0; start < mesh.cells.size(); start += 3) {
+    const int* t = mesh.cells.data() + start;
+    for (int i = 0; i < 3; ++i) {
+      const int a = t[(i + 1) % 3], b = t[(i + 2) % 3];
+      thirds[{std::min(a, b), std::max(a, b)}].push_back(t[i]);
+    }
+  }
+  const std::vector<std::vector<int>> around = neighbours_of(mesh);
+  std::vector<int> flat;
+  for (size_t start = 0; start < mesh.cells.size(); start += 3) {
+    const int* t = mesh.cells.data() + start;
+    std::array<int, 6> patch = {t[0], t[1], t[2], -1, -1, -1};
+    for (size_t i = 0; i < 3; ++i) {
+      const int a = t[(i + 1) % 3], b = t[(i + 2) % 3];
+      const std::vector<int>& of = thirds[{std::min(a, b), std::max(a, b)}];
+      if (of.size() > 2)
+        throw InputError(
+            fmt::format("the edge of vertices {} and {} has {} triangles; patches are made of surfaces that do "
+                        "not branch",
+                        std::min(a, b), std::max(a, b), of.size()));
+      // A vertex that lies across two edges (the tip of a tetrahedron's surface) would be named twice.
+      const int across = of.size() < 2 ? -1 : of[of[0] == t[i] ? 1 : 0];
+      if (std::find(patch.begin(), patch.end(), across) == patch.end() || across < 0)
+        patch[3 + i] = across;
+      else
+        throw InputError(
+            fmt::format("vertex {} lies across two edges of the triangle of vertices {}, {}, {}: patches need "
+                        "a finer mesh",
+                        across, t[0], t[1], t[2]));
+    }
+    fill_patch(patch.data(), around);
+    flat.insert(flat.end(), patch.begin(), patch.end());
+  }
+  return flat;
+}
+
 struct KindOfStencil {
   const char* name;
   int points;
@@ -104,6 +186,11 @@ const std::vector<KindOfStencil>& kinds() {
       {"triangle", 3, {Element::tri3}, cells_of, {{"A", {0, 1, 2}}}},
       {"tetrahedron", 4, {Element::tet4}, cells_of, {{"V", {0, 1, 2, 3}}}},
       {"hinge", 4, {Element::tri3}, hinges_of, {{"L", {0, 1}}, {"A0", {0, 1, 2}}, {"A1", {0, 1, 3}}}},
+      {"patch",
+       6,
+       {Element::tri3},
+       patches_of,
+       {{"A", {0, 1, 2}}, {"inner0", {1, 2, 3}, true}, {"inner1", {2, 0, 4}, true}, {"inner2", {0, 1, 5}, true}}},
   };
   return table;
 }
@@ -119,6 +206,13 @@ const KindOfStencil& kind_named(std::string_view name) {
   }
   throw InputError(
       fmt::format("no stencils '{}' can be made from a mesh; it has {}", name, fmt::join(stencil_kinds(), ", ")));
+}
+
+std::set<std::array<int, 3>> triangles_of(const Mesh& mesh) {
+  std::set<std::array<int, 3>> cells;
+  for (size_t start = 0; start < mesh.cells.size(); start += 3)
+    cells.insert(sorted(mesh.cells[start], mesh.cells[start + 1], mesh.cells[start + 2]));
+  return cells;
 }
 
 double simplex_size(const std::vector<Eigen::Vector3d>& x) {
@@ -160,12 +254,20 @@ std::string elements_with(std::string_view kind) {
 std::vector<RestSize> rest_sizes(std::string_view kind) { return kind_named(kind).sizes; }
 
 std::vector<double> rest_size_of(const RestSize& size, std::string_view kind, const std::vector<int>& stencils,
-                                 const Eigen::Matrix3Xd& X) {
+                                 const Mesh& mesh) {
   const auto points = static_cast<size_t>(kind_named(kind).points);
   std::vector<double> values;
+  if (size.is_cell) {
+    const std::set<std::array<int, 3>> cells = triangles_of(mesh);
+    for (size_t start = 0; start < stencils.size(); start += points) {
+      const auto at = [&](size_t i) { return stencils[start + static_cast<size_t>(size.points[i])]; };
+      values.push_back(cells.contains(sorted(at(0), at(1), at(2))) ? 1 : 0);
+    }
+    return values;
+  }
   std::vector<Eigen::Vector3d> at(size.points.size());
   for (size_t start = 0; start < stencils.size(); start += points) {
-    for (size_t i = 0; i < at.size(); ++i) at[i] = X.col(stencils[start + static_cast<size_t>(size.points[i])]);
+    for (size_t i = 0; i < at.size(); ++i) at[i] = mesh.X.col(stencils[start + static_cast<size_t>(size.points[i])]);
     values.push_back(simplex_size(at));
   }
   return values;

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <map>
+#include <set>
 
 #include "runtime/error.h"
 #include "runtime/mesh/curve.h"
@@ -83,11 +84,43 @@ TEST(mesh_stencils, corners_follow_a_line_and_close_with_it) {
   EXPECT_EQ(stencils_on_mesh("corner", star), (std::vector<int>{0, 1, 2, 0, 1, 3, 2, 1, 3}));
 }
 
+TEST(mesh_stencils, a_patch_is_a_triangle_and_what_lies_across_its_edges) {
+  const Mesh sheet = box_mesh(Element::tri3, {3, 3, 1}, {3, 3, 1});
+  const std::vector<int> patches = stencils_on_mesh("patch", sheet);
+  ASSERT_EQ(patches.size(), 2 * sheet.cells.size());
+  const std::vector<RestSize> sizes = rest_sizes("patch");
+  int inner = 0;
+  for (size_t p = 0; p < patches.size(); p += 6) {
+    const int* patch = &patches[p];
+    EXPECT_TRUE(std::equal(patch, patch + 3, &sheet.cells[p / 2]));
+    EXPECT_EQ(std::set<int>(patch, patch + 6).size(), 6u);
+    for (size_t i = 0; i < 3; ++i) {
+      const bool across = rest_size_of(sizes[1 + i], "patch", patches, sheet)[p / 6] == 1;
+      const std::set<int> wanted = {patch[(i + 1) % 3], patch[(i + 2) % 3], patch[3 + i]};
+      int found = 0;
+      for (size_t c = 0; c < sheet.cells.size(); c += 3)
+        found += wanted == std::set<int>(&sheet.cells[c], &sheet.cells[c] + 3);
+      EXPECT_EQ(found, across ? 1 : 0);
+      inner += found;
+    }
+  }
+  EXPECT_EQ(inner, 3 * 18 - 12);  // all edges of 18 triangles but those of the border
+  EXPECT_EQ(error_of("patch", box_mesh(Element::tri3, {1, 1, 1}, {1, 1, 1})),
+            "a patch names 6 vertices; the triangle of vertices 0, 1, 3 is connected to fewer: refine the mesh");
+  Mesh branching = sheet;
+  branching.cells = {0, 1, 4, 1, 0, 5, 0, 1, 6};
+  EXPECT_EQ(error_of("patch", branching),
+            "the edge of vertices 0 and 1 has 3 triangles; patches are made of surfaces that do not branch");
+  branching.cells = {0, 1, 2, 1, 0, 3, 2, 1, 3};
+  EXPECT_EQ(error_of("patch", branching),
+            "vertex 3 lies across two edges of the triangle of vertices 0, 1, 2: patches need a finer mesh");
+}
+
 TEST(mesh_stencils, sizes_are_those_of_the_rest_shape) {
   const auto sizes_of = [](std::string_view kind, const Mesh& mesh) {
     const std::vector<int> stencils = stencils_on_mesh(kind, mesh);
     std::map<std::string, std::vector<double>> out;
-    for (const RestSize& size : rest_sizes(kind)) out[size.name] = rest_size_of(size, kind, stencils, mesh.X);
+    for (const RestSize& size : rest_sizes(kind)) out[size.name] = rest_size_of(size, kind, stencils, mesh);
     return out;
   };
   using Sizes = std::map<std::string, std::vector<double>>;

@@ -126,7 +126,7 @@ std::vector<Family> families() {
       {"identity", [=](Random& r, int n) { return Eigen::MatrixXd(sign(r) * Eigen::MatrixXd::Identity(n, n)); }},
       {"three equal parts",
        [](Random& r, int n) {
-         const Eigen::MatrixXd a = r.square(4);
+         const Eigen::MatrixXd a = r.square((n + 2) / 3);
          return kronecker(a + a.transpose(), n);
        }},
       {"off-diagonal only",

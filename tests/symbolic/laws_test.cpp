@@ -178,6 +178,29 @@ TEST(Laws, ARodBentToACircle) {
   EXPECT_NEAR(at("rod_bending", bent).value, EI / 2 * curvature * curvature * length, 1e-15);
 }
 
+// A plate of stiffness D = E h^3/(12 (1 - nu^2)) rolled to a cylinder stores D/2 curvature^2 per area, whichever way
+// the triangles lie; a border keeps only the curvature that edges with two triangles see.
+TEST(Laws, AShellOfKoiterRolledToACylinder) {
+  const double side = 1e-3, radius = 0.5, E = 3, nu = 0.3, h = 0.01;
+  for (const double turn : {0.0, 0.4, 1.0}) {
+    Inputs in = {{"inner0", {1}}, {"inner1", {1}}, {"inner2", {1}}, {"E", {E}}, {"nu", {nu}}, {"h", {h}}};
+    const double height = side * std::sqrt(3) / 2, half = side / 2;
+    const double points[][2] = {{0, 0},          {side, 0},      {half, height}, {side + half, height},
+                                {-half, height}, {half, -height}};
+    for (size_t i = 0; i < 6; ++i) {
+      const double u = std::cos(turn) * points[i][0] - std::sin(turn) * points[i][1];
+      const double v = std::sin(turn) * points[i][0] + std::cos(turn) * points[i][1];
+      in["X" + std::to_string(i)] = {u, v, 0};
+      in["x" + std::to_string(i)] = {radius * std::sin(u / radius), v, radius * std::cos(u / radius)};
+    }
+    const double D = E * h * h * h / (12 * (1 - nu * nu)), area = side * height / 2;
+    const double expected = D / 2 * area / (radius * radius);
+    EXPECT_NEAR(at("koiter_bending", in).value, expected, 1e-5 * expected) << turn;
+    in["inner0"] = in["inner1"] = in["inner2"] = {0};
+    EXPECT_NEAR(at("koiter_bending", in).value, 0, 1e-20);
+  }
+}
+
 // At small angles the hinges are one.
 TEST(Laws, HingesAgreeAtSmallAngles) {
   Inputs flat = {{"X0", {0, 0, 0}}, {"X1", {1, 0, 0}}, {"X2", {0.25, 1, 0}}, {"X3", {0.5, -0.75, 0}}, {"k", {2}}};
