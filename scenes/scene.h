@@ -224,7 +224,7 @@ struct TimeSettings : Located {
 
 struct SolverSettings : Located {
   double tolerance = 1e-4;  // m/s
-  int max_iterations = 200;
+  int max_iterations = 500;
   int friction_iterations = 2;
   double friction_tolerance = 0.05;  // fraction of the sum of normal forces
   std::string projection = "progressive";

@@ -27,6 +27,7 @@ void add_batch_command(CLI::App& app, Run& run);
 void add_bench_command(CLI::App& app, Run& run);
 void add_compile_command(CLI::App& app, Run& run);
 void add_accuracy_command(CLI::App& app, Run& run);
+void add_stress_command(CLI::App& app, Run& run);
 
 // The whole program: parses the arguments (without the program's name), runs the subcommand, and writes messages as
 // "ergon: error: ..." to `err`. Returns the exit code.
