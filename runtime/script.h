@@ -1,6 +1,6 @@
 #pragma once
-// Vertices that follow a script: rigid motions through key frames. It establishes where they are at any time, free of
-// accumulated error: each state is made from the start.
+// Vertices that follow a script: shapes and rigid motions through key frames. It establishes where they are at any
+// time, free of accumulated error: each state is made from the start.
 
 #include <Eigen/Core>
 #include <vector>
@@ -15,12 +15,18 @@ struct ScriptKey {
   Eigen::Vector3d rotate = Eigen::Vector3d::Zero();     // rad
 };
 
+// A shape at a time, before the rigid motion. In between vertices go straight.
+struct ScriptShape {
+  double time = 0;     // s, above 0
+  Eigen::Matrix3Xd x;  // m, of the part's vertices
+};
+
 class Script {
  public:
   // `start`: 3 x vertices of the system, of which those in `vertices` are read; keys in ascending order of time, before
-  // the first of which the motion goes from the start at time 0.
+  // the first of which the motion goes from the start at time 0; likewise shapes.
   void add(std::vector<int> vertices, const Eigen::Matrix3Xd& start, const Eigen::Vector3d& center,
-           std::vector<ScriptKey> keys);
+           std::vector<ScriptKey> keys, std::vector<ScriptShape> shapes = {});
 
   bool empty() const { return parts_.empty(); }
   const std::vector<int>& vertices() const { return vertices_; }  // of all parts, in order of addition
@@ -30,9 +36,9 @@ class Script {
  private:
   struct Part {
     std::vector<int> vertices;
-    Eigen::Matrix3Xd start;  // relative to the centre
     Eigen::Vector3d center;
     std::vector<ScriptKey> keys;
+    std::vector<ScriptShape> shapes;  // relative to the centre; that of the start first, at time 0
   };
   std::vector<Part> parts_;
   std::vector<int> vertices_;

@@ -9,6 +9,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "runtime/contact/intersections.h"
+#include "runtime/contact/make_surface.h"
 #include "runtime/error.h"
 #include "runtime/mesh/curve.h"
 #include "runtime/mesh/mesh_build.h"
@@ -210,7 +212,7 @@ std::vector<BodyScript> scripts_of(const SceneObject& object, const Mesh& mesh) 
   std::vector<BodyScript> out;
   std::vector<char> taken(static_cast<size_t>(mesh.vertices()), 0);
   for (const ScriptedBox& box : object.scripted) {
-    out.push_back({selected_vertices(box, object, mesh), vector(box.center), box.motion});
+    out.push_back({selected_vertices(box, object, mesh), vector(box.center), box.motion, {}});
     for (const int v : out.back().vertices) {
       if (taken[static_cast<size_t>(v)] != 0)
         throw SourceError(box.place,
@@ -246,6 +248,63 @@ void order(Body& body) {
   body.cell_from = std::move(reordered.cell_from);
 }
 
+std::string path_in(const std::string& folder, const std::string& file) {
+  return (std::filesystem::path(folder) / file).lexically_normal().string();
+}
+
+Mesh file_surface(const SceneObstacle& obstacle, const std::string& path) {
+  return path.ends_with(".msh") ? transformed(read_mesh(path), placing(obstacle)) : placed_surface(obstacle, path);
+}
+
+void check_shape_cells(const Mesh& shape, const Mesh& mesh) {
+  if (shape.element != mesh.element || shape.cell_count() != mesh.cell_count() || shape.vertices() != mesh.vertices())
+    throw InputError(fmt::format(
+        "{} has {} {} cells over {} vertices, and {} has {} {} cells over {}; a shape moves the vertices and leaves "
+        "the cells as they are (vertices at one place count as one)",
+        shape.source, shape.cell_count(), name_of(shape.element), shape.vertices(), mesh.source, mesh.cell_count(),
+        name_of(mesh.element), mesh.vertices()));
+  const auto n = static_cast<size_t>(nodes_of(mesh.element));
+  for (size_t i = 0; i < mesh.cells.size(); ++i)
+    if (shape.cells[i] != mesh.cells[i])
+      throw InputError(
+          fmt::format("cell {} of {} joins other vertices than in {}; a shape moves the vertices and "
+                      "leaves the cells as they are",
+                      i / n, shape.source, mesh.source));
+}
+
+void check_own_intersections(const Mesh& shape, const std::string& name) {
+  const CollisionSurface surface =
+      make_surface({{name, &shape, 0, 0}}, std::vector<char>(static_cast<size_t>(shape.vertices()), 1));
+  const std::vector<Intersection> crossing = find_intersections(surface, shape.X);
+  if (crossing.empty()) return;
+  const auto& [edge, triangle] = crossing.front();
+  throw InputError(
+      fmt::format("{} intersects itself: edge {}-{} crosses triangle {}-{}-{} near {} m{}; move its parts "
+                  "apart, or set touches_itself = false",
+                  shape.source, edge[0], edge[1], triangle[0], triangle[1], triangle[2], brackets(shape.X.col(edge[0])),
+                  crossing.size() > 1 ? fmt::format(", and {} more", crossing.size() - 1) : ""));
+}
+
+std::vector<ScriptShape> shapes_of(const SceneObstacle& obstacle, const Body& body, const std::string& folder) {
+  std::vector<ScriptShape> out;
+  for (const ShapeKey& key : obstacle.shapes) {
+    try {
+      const std::string path = path_in(folder, key.mesh);
+      Mesh shape = file_surface(obstacle, path);
+      shape.source = path;
+      check_shape_cells(shape, body.mesh);
+      check_mesh(shape);
+      if (obstacle.touches_itself) check_own_intersections(shape, obstacle.name);
+      out.push_back({key.time, Eigen::Matrix3Xd(3, shape.vertices())});
+      for (int v = 0; v < shape.vertices(); ++v)
+        out.back().x.col(v) = shape.X.col(body.vertex_from[static_cast<size_t>(v)]);
+    } catch (const InputError& bad) {
+      throw SourceError(key.at("mesh"), fmt::format("obstacle '{}': {}", obstacle.name, bad.what()));
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 Body load_body(const SceneObject& object, const std::string& folder) {
@@ -278,7 +337,7 @@ Body load_body(const SceneObject& object, const std::string& folder) {
 Body load_obstacle(const SceneObstacle& obstacle, const std::string& folder) {
   Body body;
   body.name = obstacle.name;
-  const std::string path = (std::filesystem::path(folder) / obstacle.mesh).lexically_normal().string();
+  const std::string path = path_in(folder, obstacle.mesh);
   try {
     if (obstacle.box)
       body.mesh =
@@ -287,8 +346,7 @@ Body load_obstacle(const SceneObstacle& obstacle, const std::string& folder) {
     else if (obstacle.curve || obstacle.wrote("points"))
       body.mesh = transformed(thin_mesh(obstacle), placing(obstacle));
     else
-      body.mesh = obstacle.mesh.ends_with(".msh") ? transformed(read_mesh(path), placing(obstacle))
-                                                  : placed_surface(obstacle, path);
+      body.mesh = obstacle.wrote("mesh") ? file_surface(obstacle, path) : placed_surface(obstacle, path);
     body.mesh.source =
         obstacle.mesh.empty() ? fmt::format("{} of obstacle '{}'", kind_of_source(obstacle), obstacle.name) : path;
     check_mesh(body.mesh);
@@ -298,7 +356,8 @@ Body load_obstacle(const SceneObstacle& obstacle, const std::string& folder) {
   order(body);
   body.fixed.resize(static_cast<size_t>(body.ordered.vertices()));
   std::iota(body.fixed.begin(), body.fixed.end(), 0);
-  if (!obstacle.motion.empty()) body.scripts.push_back({body.fixed, vector(obstacle.center), obstacle.motion});
+  if (!obstacle.motion.empty() || !obstacle.shapes.empty())
+    body.scripts.push_back({body.fixed, vector(obstacle.center), obstacle.motion, shapes_of(obstacle, body, folder)});
   return body;
 }
 

@@ -7,6 +7,7 @@
 
 #include "runtime/mesh/mesh.h"
 #include "runtime/mesh/solid_moments.h"
+#include "runtime/script.h"
 #include "scenes/scene.h"
 
 namespace ergon {
@@ -16,6 +17,7 @@ struct BodyScript {
   std::vector<int> vertices;  // of `ordered`
   Eigen::Vector3d center;
   std::vector<MotionKey> keys;
+  std::vector<ScriptShape> shapes;
 };
 
 struct Body {
@@ -45,7 +47,8 @@ Body load_body(const SceneObject& object, const std::string& folder);
 // Of all bodies together; the control points of affine ones are not among them.
 int vertices_of(const std::vector<Body>& bodies);
 
-// The surface of an obstacle, none of whose vertices is free; it has no mass and no laws.
+// The surface of an obstacle, none of whose vertices is free; it has no mass and no laws. Throws SourceError, beside
+// the above, for a shape with other cells and for one that intersects itself although the obstacle touches itself.
 Body load_obstacle(const SceneObstacle& obstacle, const std::string& folder);
 
 }  // namespace ergon

@@ -16,6 +16,7 @@
 #include "scenes/laws.h"
 #include "scenes/object_laws.h"
 #include "scenes/start_check.h"
+#include "scenes/start_noise.h"
 #include "scenes/surface_check.h"
 #include "scenes/used_kernels.h"
 #include "symbolic/checks.h"
@@ -148,7 +149,7 @@ void add_script(const BodyScript& script, int first_vertex, BuiltScene& out) {
   for (int& vertex : vertices) vertex += first_vertex;
   std::vector<ScriptKey> keys;
   for (const MotionKey& key : script.keys) keys.push_back({key.time, vector(key.translate), vector(key.rotate)});
-  out.script.add(std::move(vertices), out.start.x, script.center, std::move(keys));
+  out.script.add(std::move(vertices), out.start.x, script.center, std::move(keys), script.shapes);
 }
 
 // All bodies one after the other: positions, masses, velocities, fixed vertices.
@@ -195,6 +196,7 @@ void lay_out(const Scene& scene, BuiltScene& out) {
   out.system = std::make_unique<System>(vertices);
   out.system->set_fixed(fixed);
   out.system->set_carriers(carriers_of(out.bodies));
+  add_start_noise(scene.start, out.bodies, scene.objects.size(), *out.system, out.start.x, out.start.v);
 }
 
 std::vector<Probe> probes_of(const Scene& scene, const BuiltScene& built) {

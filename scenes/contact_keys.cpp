@@ -25,6 +25,26 @@ Section<ContactPair> pair_section() {
   return out;
 }
 
+Section<ShapeKey> shape_section() {
+  using T = ShapeKey;
+  Section<T> out{
+      "[[obstacle.shape]]",
+      "A shape that the obstacle has taken at a time. Vertices go straight from the obstacle's own mesh at "
+      "time 0 to the first shape, and on from one to the next; after the last one the shape stays. Keys move "
+      "the whole of it.",
+      {},
+      {},
+      {}};
+  out.keys = {
+      number_key("time", &T::time, "s", positive, Need::required, "after the start"),
+      text_key("mesh", &T::mesh, Need::required,
+               "mesh file relative to the scene, with the cells of the obstacle's own mesh in the same order; it is "
+               "scaled, rotated and translated as that is"),
+  };
+  out.check = [](const std::string&, const T& shape) { check_mesh_ending(shape); };
+  return out;
+}
+
 }  // namespace
 
 Section<SceneObstacle> obstacle_section() {
@@ -41,11 +61,15 @@ Section<SceneObstacle> obstacle_section() {
   out.keys.push_back(vector_key("center", &T::center, "m", any, Need::optional,
                                 "what rotations of the script are about; moves along"));
   out.keys.push_back(tables_key("key", &T::motion, motion_section<T>, Need::optional, "script of its motion"));
+  out.keys.push_back(tables_key("shape", &T::shapes, shape_section, Need::optional, "shapes that it takes in turn"));
   out.check = [](const std::string&, const T& obstacle) {
     check_shape(obstacle);
+    if (!obstacle.shapes.empty() && !obstacle.wrote("mesh"))
+      throw SourceError(obstacle.at("shape"), "'shape' needs a 'mesh': the shape at the start, from a file too");
     if (obstacle.wrote("element") && !obstacle.box)
       throw SourceError(obstacle.at("element"), "'element' has no use here: it is for an obstacle that is a box");
     check_motion(obstacle.motion);
+    check_motion(obstacle.shapes);
   };
   return out;
 }

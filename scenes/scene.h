@@ -132,6 +132,12 @@ struct MotionKey : Located {
   Vector3 rotate = {0, 0, 0};     // rad, a rotation vector: its direction is the axis, its length the angle
 };
 
+// A shape that an obstacle has taken at a time; its vertices go straight from one to the next.
+struct ShapeKey : Located {
+  double time = 0;   // s
+  std::string mesh;  // path relative to the scene file; with the cells of the obstacle's own mesh
+};
+
 // Vertices in a box that follow a script.
 struct ScriptedBox : BoxSelector {
   Vector3 center = {0, 0, 0};  // m, that rotations are about; moves along
@@ -172,6 +178,7 @@ struct SceneObstacle : SceneShape {
   std::string element = "hex8";  // of a box
   Vector3 center = {0, 0, 0};    // m, that rotations are about; moves along
   std::vector<MotionKey> motion;
+  std::vector<ShapeKey> shapes;
 };
 
 // What holds between two objects, or for one with itself, instead of what [contact] says.
@@ -222,9 +229,15 @@ struct TimeSettings : Located {
   bool quasi_static() const { return integrator == "quasi_static"; }
 };
 
+// How the first state differs from what the objects say.
+struct StartSettings : Located {
+  double noise = 0;  // m/s
+  int seed = 1;
+};
+
 struct SolverSettings : Located {
   double tolerance = 1e-4;  // m/s
-  int max_iterations = 500;
+  int max_iterations = 1000;
   int friction_iterations = 2;
   double friction_tolerance = 0.05;  // fraction of the sum of normal forces
   std::string projection = "progressive";
@@ -244,6 +257,7 @@ struct Scene : Located {
   std::string description;
   Vector3 gravity = {0, 0, -9.81};  // m/s^2
   TimeSettings time;
+  StartSettings start;
   SolverSettings solver;
   OutputSettings output;
   std::vector<SceneObject> objects;

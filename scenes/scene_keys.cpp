@@ -14,6 +14,20 @@ namespace {
 
 using namespace key_ranges;
 
+Section<StartSettings> start_section() {
+  using T = StartSettings;
+  Section<T> out{"[start]", "How the first state differs from what the objects say.", {}, {}, {}};
+  out.keys = {
+      number_key(
+          "noise", &T::noise, "m/s", not_negative, Need::optional,
+          "largest component of a random velocity that every free vertex gets in addition, and every affine body "
+          "as a whole, with a rotation as fast"),
+      integer_key("seed", &T::seed, {0, 2147483647, false, false}, Need::optional,
+                  "of the noise: the same one gives the same velocities on every machine"),
+  };
+  return out;
+}
+
 Section<SolverSettings> solver_section() {
   using T = SolverSettings;
   Section<T> out{"[solver]", "How each step is solved.", {}, {}, {}};
@@ -334,6 +348,7 @@ Section<Scene> scene_section() {
       text_key("description", &T::description, Need::optional, "a line for whoever reads the file"),
       vector_key("gravity", &T::gravity, "m/s^2", any, Need::optional, "acceleration of free fall"),
       table_key("time", &T::time, time_section, Need::required, "how long to simulate"),
+      table_key("start", &T::start, start_section, Need::optional, "how the first state differs"),
       table_key("solver", &T::solver, solver_section, Need::optional, "how each step is solved"),
       table_key("output", &T::output, output_section, Need::optional, "what is written"),
       tables_key("object", &T::objects, object_section, Need::required, "at least one body that moves"),

@@ -58,6 +58,7 @@ struct FileKey {
 };
 const FileKey file_keys[] = {{{"object", "mesh"}, false},
                              {{"obstacle", "mesh"}, false},
+                             {{"obstacle", "shape", "mesh"}, false},
                              {{"object", "energy", "law"}, true},
                              {{"contact", "barrier"}, true}};
 

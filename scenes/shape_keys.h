@@ -132,7 +132,8 @@ Section<MotionKey> motion_section() {
 }
 
 // Times ascend.
-inline void check_motion(const std::vector<MotionKey>& keys) {
+template <class T>
+void check_motion(const std::vector<T>& keys) {
   for (size_t i = 1; i < keys.size(); ++i)
     if (keys[i].time <= keys[i - 1].time)
       throw SourceError(keys[i].at("time"),
@@ -163,6 +164,14 @@ std::vector<Key<T>> shape_keys(const std::string& mesh_help) {
   };
 }
 
+template <class T>
+void check_mesh_ending(const T& shape) {
+  for (const char* ending : {".msh", ".obj", ".stl", ".ply"})
+    if (shape.mesh.ends_with(ending)) return;
+  throw SourceError(shape.at("mesh"),
+                    fmt::format("'mesh' must end in .msh, .obj, .stl or .ply, found \"{}\"", shape.mesh));
+}
+
 // Exactly one source, and a mesh file of a known kind.
 template <class T>
 void check_shape(const T& shape) {
@@ -182,11 +191,7 @@ void check_shape(const T& shape) {
   if (given.size() > 1)
     throw SourceError(shape.at(given[1]), fmt::format("{} '{}' has both '{}' and '{}'; keep one of them",
                                                       table_name<T>(), shape.name, given[0], given[1]));
-  if (!shape.wrote("mesh")) return;
-  for (const char* ending : {".msh", ".obj", ".stl", ".ply"})
-    if (shape.mesh.ends_with(ending)) return;
-  throw SourceError(shape.at("mesh"),
-                    fmt::format("'mesh' must end in .msh, .obj, .stl or .ply, found \"{}\"", shape.mesh));
+  if (shape.wrote("mesh")) check_mesh_ending(shape);
 }
 
 }  // namespace ergon

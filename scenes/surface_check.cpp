@@ -54,7 +54,7 @@ std::string vertex_text(const BuiltScene& built, int vertex) {
 
 SurfaceFaults find_surface_faults(const BuiltScene& built, const Eigen::Matrix3Xd& x) {
   SurfaceFaults faults;
-  faults.crossing = find_intersections(built.surfaces->surface(), x);
+  faults.crossing = built.surfaces->crossing(x);
   faults.close = built.surfaces->touching(x);
   return faults;
 }

@@ -30,6 +30,7 @@ struct Sweep : Located {
   std::string scene, folder;
   int jobs = 0;
   int threads = 1;
+  bool verify = false;
   std::vector<std::string> measures;
   std::vector<Place> measure_places;
   std::vector<std::pair<std::string, const toml::array*>> grid;
@@ -83,10 +84,12 @@ Section<Sweep> sweep_section() {
   using T = Sweep;
   Section<T> out{"the sweep", "Top level of the file.", {}, {}, {}};
   constexpr Range at_least_one{1, std::numeric_limits<double>::infinity(), false, true};
-  out.keys = {text_key("scene", &T::scene, Need::required, "the scene file, relative to this one"),
+  out.keys = {text_key("scene", &T::scene, Need::required,
+                       "the scene file, relative to this one; * in its name stands for any text"),
               text_key("folder", &T::folder, Need::optional, "of all results, relative to the working directory"),
               integer_key("jobs", &T::jobs, at_least_one, Need::optional, "at once"),
               integer_key("threads", &T::threads, at_least_one, Need::optional, "of each job"),
+              boolean_key("verify", &T::verify, "every step is tested for intersections"),
               measures_key(),
               grid_key(),
               tables_key("list", &T::list, list_section, Need::optional, "values that are run together")};
@@ -118,6 +121,25 @@ std::vector<std::vector<Change>> combinations(const Sweep& sweep, const std::str
   std::vector<std::vector<Change>> by;
   for (const SweepList& list : sweep.list) by.push_back(list.values);
   if (!by.empty()) multiply(by);
+  return out;
+}
+
+// Those that `scene` names, in the order of their names.
+std::vector<std::string> scene_files(const Sweep& sweep, const std::string& file) {
+  const fs::path path = (fs::path(file).parent_path() / sweep.scene).lexically_normal();
+  const std::string pattern = path.filename().string();
+  const size_t star = pattern.find('*');
+  if (star == std::string::npos) return {path.string()};
+  const std::string start = pattern.substr(0, star), end = pattern.substr(star + 1);
+  std::vector<std::string> out;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(path.has_parent_path() ? path.parent_path() : ".", error)) {
+    const std::string name = entry.path().filename().string();
+    if (name.size() >= start.size() + end.size() && name.starts_with(start) && name.ends_with(end))
+      out.push_back((path.parent_path() / name).string());
+  }
+  if (out.empty()) throw SourceError(sweep.at("scene"), fmt::format("no file is named like {}", path.string()));
+  std::sort(out.begin(), out.end());
   return out;
 }
 
@@ -181,21 +203,26 @@ BatchPlan read_batch(const std::string& file) {
   plan.at_once = sweep.jobs;
   plan.threads = sweep.threads;
   plan.measures = sweep.measures;
-  const std::string scene_file = (fs::path(file).parent_path() / sweep.scene).lexically_normal().string();
+  plan.verify = sweep.verify;
+  const std::vector<std::string> files = scene_files(sweep, file);
   const auto changes = combinations(sweep, file);
+  if (files.size() > 1) plan.keys.emplace_back("scene");
 
   std::vector<SceneText> scenes;
-  for (const auto& values : changes) {
-    scenes.emplace_back(scene_file);
-    BatchJob job;
-    job.name = fmt::format("{:04}", plan.jobs.size());
-    for (const auto& [key, value] : values) {
-      scenes.back().set(key, *value, place_of(value->source(), file));
-      job.values.emplace_back(key, text_of_value(*value));
-      if (std::find(plan.keys.begin(), plan.keys.end(), key) == plan.keys.end()) plan.keys.push_back(key);
+  for (const std::string& scene_file : files) {
+    for (const auto& values : changes) {
+      scenes.emplace_back(scene_file);
+      BatchJob job;
+      job.name = fmt::format("{:04}", plan.jobs.size());
+      if (files.size() > 1) job.values.emplace_back("scene", fs::path(scene_file).stem().string());
+      for (const auto& [key, value] : values) {
+        scenes.back().set(key, *value, place_of(value->source(), file));
+        job.values.emplace_back(key, text_of_value(*value));
+        if (std::find(plan.keys.begin(), plan.keys.end(), key) == plan.keys.end()) plan.keys.push_back(key);
+      }
+      add_inputs(scenes.back(), plan.inputs);
+      plan.jobs.push_back(std::move(job));
     }
-    add_inputs(scenes.back(), plan.inputs);
-    plan.jobs.push_back(std::move(job));
   }
 
   std::vector<std::pair<std::string, std::string>> renamed = plan.inputs;
@@ -206,7 +233,7 @@ BatchPlan read_batch(const std::string& file) {
     BatchJob& job = plan.jobs[i];
     scenes[i].rename_files(renamed);
     job.scene = scenes[i].text();
-    job.fingerprint = content_hash(job.scene + contents);
+    job.fingerprint = content_hash(job.scene + contents + (plan.verify ? "verify" : ""));
     const std::string as_job = (fs::path(plan.folder) / job.name / "scene.toml").string();
     try {
       check_measures(sweep, read_scene_text(job.scene, as_job));

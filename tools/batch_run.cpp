@@ -124,6 +124,7 @@ class Batch {
                       log = (folder / "log.txt").string();
     const std::string threads = std::to_string(plan_.threads);
     std::vector<std::string> words = {options_.program, "run", scene, "--out", out, "--threads", threads, "--quiet"};
+    if (plan_.verify) words.emplace_back("--verify");
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);

@@ -11,12 +11,13 @@
 namespace ergon {
 
 struct ContactStatus {
-  bool reached = false;                                           // something was within dhat since begin_step
-  int active = 0;                                                 // pairs within dhat at the last set_active
-  int rubbing = 0;                                                // pairs with a friction force
-  double smallest_gap = std::numeric_limits<double>::infinity();  // m; +inf where nothing is near
-  double stiffness = 0;                                           // of the barriers, largest; in the unit of their law
-  double energy_added = 0;                                        // J, by changes of stiffness since begin_step
+  bool reached = false;  // something was within dhat since begin_step
+  int active = 0;        // pairs within dhat at the last set_active
+  int rubbing = 0;       // pairs with a friction force
+  double smallest_gap =
+      std::numeric_limits<double>::infinity();  // m; +inf where nothing is within dhat (of grounds: none)
+  double stiffness = 0;                         // of the barriers, largest; in the unit of their law
+  double energy_added = 0;                      // J, by changes of stiffness since begin_step
 };
 
 // Between two lags of friction: the sum of the changes of normal forces and the sum of these, N.

@@ -5,7 +5,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-#include "runtime/contact/pair_list.h"
 #include "runtime/contact/surface_trees.h"
 #include "runtime/error.h"
 #include "runtime/predicates.h"
@@ -38,37 +37,47 @@ std::vector<IntegerBox> boxes_of(const CollisionSurface& surface, const Eigen::M
 
 }  // namespace
 
-std::vector<Intersection> find_intersections(const CollisionSurface& surface, const Eigen::Matrix3Xd& x) {
+IntersectionFinder::IntersectionFinder(const CollisionSurface& surface)
+    : surface_(&surface),
+      edges_(tree_of(surface.edges, {}, surface)),
+      triangles_(tree_of(surface.triangles, {}, surface)),
+      near_(edges_, triangles_) {}
+
+std::vector<Intersection> IntersectionFinder::find(const Eigen::Matrix3Xd& x) {
   std::vector<Intersection> found;
+  const CollisionSurface& surface = *surface_;
   if (surface.edges.empty() || surface.triangles.empty()) return found;
   const std::vector<IntegerBox> boxes = boxes_of(surface, x);
-  BoxTree edges = tree_of(surface.edges, {}, surface), triangles = tree_of(surface.triangles, {}, surface);
-  edges.fit(boxes);
-  triangles.fit(boxes);
-  PairList near(edges, triangles);
+  edges_.fit(boxes);
+  triangles_.fit(boxes);
+  near_.clear();
   for (int i = 0; i < static_cast<int>(surface.radius.size()); ++i) {
     for (int j = 0; j < static_cast<int>(surface.radius.size()); ++j) {
-      if (surface.meet[static_cast<size_t>(i)][static_cast<size_t>(j)]) near.add(i, j, Shift{});
+      if (surface.meet[static_cast<size_t>(i)][static_cast<size_t>(j)]) near_.add(i, j, Shift{});
     }
   }
-  std::vector<std::array<int, 2>> pairs, meeting;
-  near.write(pairs);
-  const auto count = static_cast<std::ptrdiff_t>(pairs.size());
+  near_.write(pairs_);
+  meeting_.clear();
+  const auto count = static_cast<std::ptrdiff_t>(pairs_.size());
 #pragma omp parallel for schedule(dynamic, 256) if (count >= kSerial)
   for (std::ptrdiff_t i = 0; i < count; ++i) {
-    const auto& pair = pairs[static_cast<size_t>(i)];
+    const auto& pair = pairs_[static_cast<size_t>(i)];
     const auto& e = surface.edges[static_cast<size_t>(pair[0])];
     const auto& t = surface.triangles[static_cast<size_t>(pair[1])];
     if (std::find_first_of(e.begin(), e.end(), t.begin(), t.end()) != e.end()) continue;
     if (!segment_meets_triangle(x.col(e[0]), x.col(e[1]), x.col(t[0]), x.col(t[1]), x.col(t[2]))) continue;
 #pragma omp critical
-    meeting.push_back(pair);
+    meeting_.push_back(pair);
   }
-  std::sort(meeting.begin(), meeting.end());
-  for (const auto& [edge, triangle] : meeting) {
+  std::sort(meeting_.begin(), meeting_.end());
+  for (const auto& [edge, triangle] : meeting_) {
     found.push_back({surface.edges[static_cast<size_t>(edge)], surface.triangles[static_cast<size_t>(triangle)]});
   }
   return found;
+}
+
+std::vector<Intersection> find_intersections(const CollisionSurface& surface, const Eigen::Matrix3Xd& x) {
+  return IntersectionFinder(surface).find(x);
 }
 
 }  // namespace ergon

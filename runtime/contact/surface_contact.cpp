@@ -59,6 +59,7 @@ SurfaceContact::SurfaceContact(System& system, CollisionSurface surface, const S
       options_(checked(std::move(options))),
       X_(X),
       broad_(surface_),
+      intersections_(surface_),
       probe_(laws.barrier[0], options_.dhat),
       kappa_(probe_, options_.dhat, static_cast<int>(surface_.radius.size()), options_.stiffness),
       mass_(system.carriers().resisting_mass(mass)) {
@@ -298,7 +299,7 @@ ContactStatus SurfaceContact::status(const Eigen::Matrix3Xd& x) {
   status.reached = reached_;
   for_each_active([&](ContactKind, size_t, const int*, std::array<int, 2>) { ++status.active; });
   status.rubbing = friction_ ? friction_->count() : 0;
-  status.smallest_gap = active_.smallest_gap;
+  status.smallest_gap = status.active > 0 ? active_.smallest_gap : infinity;
   status.stiffness = kappa_.values().size() > 0 ? kappa_.values().maxCoeff() : 0;
   status.energy_added = energy_added_;
   return status;

@@ -17,6 +17,7 @@
 #include "runtime/contact/broad_phase.h"
 #include "runtime/contact/contact.h"
 #include "runtime/contact/contact_frame.h"
+#include "runtime/contact/intersections.h"
 #include "runtime/contact/pair_stiffness.h"
 #include "runtime/contact/surface_friction.h"
 #include "runtime/system.h"
@@ -61,6 +62,8 @@ class SurfaceContact : public Contact {
 
   // Vertices of the stencils whose gap is not positive at x. The potentials keep the stencils that they have.
   std::vector<std::vector<int>> touching(const Eigen::Matrix3Xd& x);
+  // Exactly, at x.
+  std::vector<Intersection> crossing(const Eigen::Matrix3Xd& x) { return intersections_.find(x); }
 
   const CollisionSurface& surface() const { return surface_; }
   const ActiveSet& active() const { return active_; }  // of the last state looked at
@@ -89,6 +92,7 @@ class SurfaceContact : public Contact {
   Eigen::Matrix3Xd X_;
   double weight_ = 0;  // N, of all that moves
   BroadPhase broad_;
+  IntersectionFinder intersections_;
   BarrierProbe probe_;
   PairStiffness kappa_;
   Eigen::VectorXd mass_;  // kg, Carriers::resisting_mass

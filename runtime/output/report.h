@@ -36,7 +36,7 @@ struct ReportRecord {
   std::vector<std::pair<std::string, std::array<double, 3>>> momentum;  // linear, angular; none: left out of the line
   std::vector<std::pair<std::string, double>> times;                    // by part, s
   std::vector<SkippedPart> skipped;
-  std::optional<double> smallest_gap;  // m; none without contact
+  std::optional<double> smallest_gap;  // m; none where no surfaces are within dhat and no ground is
   int contacts = 0;
   std::vector<std::pair<std::string, std::array<double, 3>>> probes;  // m, by name; none: left out of the line
   std::vector<ObjectForces> forces;                                   // none: left out of the line

@@ -118,6 +118,28 @@ TEST(Contact, ObstacleOnAScriptCarriesWhatLiesOnIt) {
   EXPECT_LT((way.colwise() - Eigen::Vector3d(0.2, 0, 0.3)).cwiseAbs().maxCoeff(), 1e-15);
 }
 
+// Between shapes vertices go straight, and keys move the whole about its centre.
+TEST(Contact, ObstacleTakesItsShapesInTurn) {
+  const FinishedScene run = finish(read_scene_text(
+      settings("[0, 0, 0]", 0.05, 3) + block("block", "translate = [0, 0, 1]\n") +
+          "[[obstacle]]\nname = \"cup\"\nmesh = \"cup_open.obj\"\nscale = 2\ntranslate = [1, 0, 0]\n"
+          "[[obstacle.shape]]\ntime = 0.1\nmesh = \"cup_closed.obj\"\n[[obstacle.shape]]\ntime = 0.2\nmesh = "
+          "\"cup_open.obj\"\n[[obstacle.key]]\ntime = 0.2\ntranslate = [0, 0.4, 0]\n",
+      test::source("/scenes/meshes/a.toml")));
+  ASSERT_EQ(run.summary.failure, "");
+  const Body& cup = run.built.bodies[1];
+  for (int v = 0; v < cup.ordered.vertices(); ++v) {
+    const Eigen::Vector3d open = cup.ordered.X.col(v);
+    const int ring = (cup.vertex_from[static_cast<size_t>(v)] + 11) / 12;  // 0: the middle of the bottom
+    const double part = ring < 2 ? 1
+                                 : (1 + std::array{0.045, 0.04, 0.042}[static_cast<size_t>(ring - 2)] /
+                                            std::array{0.06, 0.062, 0.064}[static_cast<size_t>(ring - 2)]) /
+                                       2;
+    const Eigen::Vector3d expected(1 + part * (open[0] - 1), part * open[1] + 0.3, open[2]);
+    EXPECT_LT((run.end.x.col(cup.first_vertex + v) - expected).norm(), 2e-5) << v;
+  }
+}
+
 TEST(Contact, OffsetsKeepSurfacesApart) {
   const FinishedScene run =
       finish_text(settings("[0, 0, -9.81]", 0.01, 40) + block("block", "translate = [0, 0, 0.02]\noffset = 0.004\n") +

@@ -74,6 +74,27 @@ TEST(SlowScenes, a_ball_is_pushed_into_the_tube_by_long_steps) {
   EXPECT_GT(mean(tube, tube.end.x, 0, 0), 0.03);
 }
 
+TEST(SlowScenes, a_cup_that_is_pressed_together_squeezes_a_ball) {
+  const auto ball = [](const FinishedScene& cup) {
+    return Eigen::Matrix3Xd(cup.end.x.leftCols(cup.built.bodies[0].ordered.vertices()));
+  };
+  const auto width = [&](const FinishedScene& cup) { return ball(cup).topRows<2>().colwise().norm().maxCoeff(); };
+  const auto height = [&](const FinishedScene& cup) {
+    return ball(cup).row(2).maxCoeff() - ball(cup).row(2).minCoeff();
+  };
+  const FinishedScene pressed = finish("squeezed_ball.toml", 60);
+  ASSERT_EQ(pressed.summary.failure, "");
+  const FinishedScene open = finish("squeezed_ball.toml");
+  ASSERT_EQ(open.summary.failure, "");
+  EXPECT_LT(width(pressed), 0.047);      // the wall is at 0.0386 to 0.042 m where it touches the ball
+  EXPECT_NEAR(width(open), 0.05, 5e-3);  // it sags
+  EXPECT_GT(height(pressed), height(open));
+  // The cup is as it was.
+  const Body& cup = open.built.bodies[1];
+  const auto at_end = open.end.x.middleCols(cup.first_vertex, cup.ordered.vertices());
+  EXPECT_LT((at_end - cup.ordered.X).cwiseAbs().maxCoeff(), 1e-15);
+}
+
 TEST(SlowScenes, a_mat_is_twisted_by_its_ends) {
   const FinishedScene mat = finish("twisted_mat.toml");
   ASSERT_EQ(mat.summary.failure, "");

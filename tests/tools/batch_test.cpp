@@ -102,6 +102,24 @@ TEST_F(Batch, ListsWhatFailedWithItsReasonAndGoesOn) {
   EXPECT_THAT(lines[3], StartsWith("0002,done,,"));
 }
 
+TEST_F(Batch, RunsAllScenesThatMatch) {
+  write("block_of_steel.toml", read("block.toml"));
+  write("sweep.toml", "scene = \"b*.toml\"\nmeasures = [\"steps\"]\n[grid]\n\"start.seed\" = [1, 2]\n");
+  const Answer answer = ergon("batch sweep.toml");
+  EXPECT_EQ(answer.code, 0) << answer.err << answer.out;
+  const std::vector<std::string> lines = table();
+  ASSERT_EQ(lines.size(), 5u);
+  EXPECT_EQ(lines[0], "job,state,reason,scene,start.seed,steps");
+  EXPECT_EQ(lines[1], "0000,done,,block,1,2");
+  EXPECT_EQ(lines[4], "0003,done,,block_of_steel,2,2");
+  // What was done without a test of its steps is not done with it.
+  write("sweep.toml", "scene = \"b*.toml\"\nmeasures = [\"steps\"]\nverify = true\n[grid]\n\"start.seed\" = [1, 2]\n");
+  EXPECT_THAT(ergon("batch sweep.toml").out, testing::Not(HasSubstr("before")));
+  EXPECT_THAT(ergon("batch sweep.toml").out, HasSubstr("4/4 done (4 before)"));
+  write("sweep.toml", "scene = \"c*.tml\"\n");
+  EXPECT_EQ(ergon("batch sweep.toml").err, "ergon: error: sweep.toml:1:9: no file is named like c*.tml\n");
+}
+
 TEST_F(Batch, NamesWhatIsWrongBeforeAnythingRuns) {
   const auto error = [&](const std::string& text) {
     sweep(text);
