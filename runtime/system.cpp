@@ -181,6 +181,7 @@ Evaluation System::value(const Eigen::Matrix3Xd& x) {
 
 Evaluation System::gradient(const Eigen::Matrix3Xd& x, Eigen::Matrix3Xd& gradient) {
   impl->sum_gradients(x, gradient, [](size_t) { return true; });
+  guide(gradient);
   return impl->sum(false);
 }
 
@@ -248,6 +249,8 @@ Evaluation System::hessian(const Eigen::Matrix3Xd& x, Projection projection, Eig
     }
   }
   d.numbers.carriers.collect(gradient);
+  guide(gradient);
+  d.guide_matrix(matrix);
   Evaluation evaluation = d.sum(false, true);
   for (const SystemTerm& term : d.terms) {
     if (term.constant()) evaluation.indefinite += term.indefinite;

@@ -14,6 +14,12 @@
 
 namespace ergon {
 
+// A vertex that does not move in all directions: `along` is the orthogonal projector onto those in which it does.
+struct Guide {
+  int vertex = 0;
+  Eigen::Matrix3d along = Eigen::Matrix3d::Identity();
+};
+
 struct Evaluation {
   double value = 0;              // J
   PotentialValues by_potential;  // J, in order of addition
@@ -36,6 +42,12 @@ class System {
   // that is fixed or carried itself, and for a vertex that is fixed and carried or carried twice.
   void set_carriers(Carriers carriers);
   const Carriers& carriers() const;
+  // Guided vertices keep their rows in the matrix, but what potentials give is projected: with P the projectors, the
+  // gradient is P g and the matrix P H P + s (I - P), s > 0, so that Newton's steps are along. Throws InputError for a
+  // matrix that is no such projector, for a vertex that is guided twice or carried, and for a control point.
+  void set_guides(std::vector<Guide> guides);
+  // Takes from the columns of guided vertices what is not along.
+  void guide(Eigen::Matrix3Xd& field) const;
   int free_vertices() const;
   int block_of(int vertex) const;  // block row of a vertex, -1 when it is fixed or carried
   bool moves(int vertex) const;    // it is not fixed
@@ -46,9 +58,10 @@ class System {
 
   Evaluation value(const Eigen::Matrix3Xd& x);
   // gradient: 3 x vertices, N; columns of fixed vertices hold the reaction (the full gradient), those of carried ones
-  // what is collected at their control points
+  // what is collected at their control points, those of guided vertices what is along
   Evaluation gradient(const Eigen::Matrix3Xd& x, Eigen::Matrix3Xd& gradient);
-  // The part of the gradient that comes from some potentials; indices, each once.
+  // The part of the gradient that comes from some potentials; indices, each once. Not projected by guides, so that it
+  // tells their reactions.
   void gradient_of(const std::vector<int>& potentials, const Eigen::Matrix3Xd& x, Eigen::Matrix3Xd& gradient);
   // The matrix keeps its pattern from call to call; it is built at the first call and again only when a stencil list
   // brings a coupling that is not in it.

@@ -153,6 +153,7 @@ struct System::Impl {
   int vertices = 0;
   std::vector<char> fixed;
   SystemNumbers numbers;
+  std::vector<Guide> guides;
   unsigned long fixed_version = 1;  // of both
   std::vector<SystemTerm> terms;
   std::vector<size_t> first_terms;  // of each potential
@@ -214,6 +215,7 @@ struct System::Impl {
   void update_first();
   // Called by all threads of a team: writes the base and clears what no chunk stores.
   void start_matrix(BlockMatrix& matrix) const;
+  void guide_matrix(BlockMatrix& matrix) const;
   bool worth_threads() const;
   void add_term(Potential potential, bool gives_gradient, bool gives_hessian);
   Evaluation sum(bool margins, bool hessians = false) const;

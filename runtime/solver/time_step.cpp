@@ -92,6 +92,7 @@ Eigen::Matrix3Xd TimeStepper::free_acceleration(const State& state) {
   }
   Eigen::Matrix3Xd gradient;
   system_->gradient_of(stored, state.x, gradient);
+  system_->guide(gradient);
   for (int v = 0; v < system_->vertices(); ++v) {
     if (system_->block_of(v) < 0)
       gradient.col(v).setZero();
