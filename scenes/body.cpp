@@ -196,15 +196,35 @@ std::vector<int> selected_vertices(const BoxSelector& box, const SceneObject& ob
                                            object.name, brackets(bounds.col(0)), brackets(bounds.col(1))));
 }
 
-std::vector<int> fixed_vertices(const SceneObject& object, const Mesh& mesh) {
-  std::vector<int> out;
-  for (const BoxSelector& box : object.fixed) {
-    const std::vector<int> inside = selected_vertices(box, object, mesh);
-    out.insert(out.end(), inside.begin(), inside.end());
+// Boxes add up: who is held along all axes is fixed.
+void hold_vertices(const SceneObject& object, Body& body) {
+  const auto count = static_cast<size_t>(body.ordered.vertices());
+  std::vector<Eigen::Vector3i> held(count, Eigen::Vector3i::Zero());
+  for (const FixedBox& box : object.fixed) {
+    if (object.affine() && box.axes != "xyz")
+      throw SourceError(box.at("axes"), "an affine body is held as a whole, along all axes; leave 'axes' out");
+    for (const int v : selected_vertices(box, object, body.ordered))
+      for (const char axis : box.axes) held[static_cast<size_t>(v)][axis - 'x'] = 1;
   }
-  std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
-  return out;
+  for (int v = 0; v < body.ordered.vertices(); ++v) {
+    const Eigen::Vector3i& axes = held[static_cast<size_t>(v)];
+    if (axes.sum() == 3)
+      body.fixed.push_back(v);
+    else if (axes.sum() > 0)
+      body.guides.push_back({v, Eigen::Vector3d(1 - axes[0], 1 - axes[1], 1 - axes[2]).asDiagonal()});
+  }
+}
+
+void load_vertices(const SceneObject& object, Body& body) {
+  for (const SceneLoad& load : object.loads) {
+    body.loads.push_back(load_shares(body.ordered, selected_vertices(load, object, body.ordered)));
+    if (load.wrote("traction") && body.loads.back().dimension < 2)
+      throw SourceError(
+          load.at("traction"),
+          fmt::format("this box holds no face of object '{}' with all its vertices; widen it, or give the "
+                      "'force' on the {} in it",
+                      object.name, body.loads.back().dimension == 1 ? "edges" : "vertices"));
+  }
 }
 
 // A vertex follows one script at most.
@@ -319,7 +339,8 @@ Body load_body(const SceneObject& object, const std::string& folder) {
     throw SourceError(place, fmt::format("object '{}': {}", object.name, bad.what()));
   }
   order(body);
-  body.fixed = fixed_vertices(object, body.ordered);
+  hold_vertices(object, body);
+  load_vertices(object, body);
   body.scripts = scripts_of(object, body.ordered);
   if (object.affine() && !is_held(object, body)) body.moments = moments;
   body.quadrature = object.quadrature;

@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "runtime/mesh/load_shares.h"
 #include "runtime/mesh/mesh.h"
 #include "runtime/mesh/solid_moments.h"
 #include "runtime/script.h"
+#include "runtime/system.h"
 #include "scenes/scene.h"
 
 namespace ergon {
@@ -22,11 +24,13 @@ struct BodyScript {
 
 struct Body {
   std::string name;
-  Mesh mesh;                     // in the order of its source, moved to its start
-  Mesh ordered;                  // the same in the order in which it is computed
-  std::vector<int> vertex_from;  // vertex i of `ordered` is vertex vertex_from[i] of `mesh`
-  std::vector<int> cell_from;    // the same of cells
-  std::vector<int> fixed;        // vertices of `ordered` that never move
+  Mesh mesh;                      // in the order of its source, moved to its start
+  Mesh ordered;                   // the same in the order in which it is computed
+  std::vector<int> vertex_from;   // vertex i of `ordered` is vertex vertex_from[i] of `mesh`
+  std::vector<int> cell_from;     // the same of cells
+  std::vector<int> fixed;         // vertices of `ordered` that never move
+  std::vector<Guide> guides;      // vertices of `ordered` that move along some axes only
+  std::vector<LoadShares> loads;  // of the object's loads, over vertices of `ordered`
   std::vector<BodyScript> scripts;
   std::vector<int> surface;       // vertices of `ordered` that may touch something
   std::optional<int> quadrature;  // exactness; absent: the element's own

@@ -31,6 +31,7 @@ struct WorldLaws {
   const Energy* inertia = nullptr;
   const Energy* gravity = nullptr;
   const Energy* orthogonality = nullptr;
+  const Energy* load = nullptr;
   ContactLaws contact;
 };
 
@@ -47,6 +48,8 @@ WorldLaws world_laws(const Scene& scene, Laws& laws, std::vector<std::string>& s
     out.gravity = &laws.get("gravity", whole);
   if (std::any_of(scene.objects.begin(), scene.objects.end(), [](const SceneObject& o) { return o.affine(); }))
     out.orthogonality = &laws.get("affine_orthogonality", whole);
+  if (std::any_of(scene.objects.begin(), scene.objects.end(), [](const SceneObject& o) { return !o.loads.empty(); }))
+    out.load = &laws.get("dead_load", whole);
   out.contact = contact_laws(scene, laws, skipped);
   return out;
 }
@@ -82,6 +85,25 @@ std::vector<double> masses_of(const Eigen::VectorXd& mass, const std::vector<int
   return out;
 }
 
+void add_loads(const Scene& scene, const Kernel& kernel, BuiltScene& out) {
+  for (size_t i = 0; i < scene.objects.size(); ++i)
+    for (size_t k = 0; k < scene.objects[i].loads.size(); ++k) {
+      const SceneLoad& load = scene.objects[i].loads[k];
+      const LoadShares& on = out.bodies[i].loads[k];
+      const Eigen::Vector3d force = vector(load.force) + on.measure * vector(load.traction);
+      std::vector<int> points;
+      std::vector<double> shares;
+      for (int v = 0; v < on.shares.size(); ++v) {
+        if (on.shares[v] == 0) continue;
+        points.push_back(out.bodies[i].first_vertex + v);
+        shares.push_back(on.shares[v]);
+      }
+      const int index = out.system->add(Potential::on_stencils(
+          "load", kernel, points, out.start.x, {{"force", {force[0], force[1], force[2]}}}, {{"share", shares}}));
+      add_load(scene, index, "force", {force[0], force[1], force[2]}, out);
+    }
+}
+
 void add_world(const Scene& scene, const WorldLaws& world, const UsedKernels& kernels, BuiltScene& out) {
   const Eigen::Matrix3Xd& X = out.start.x;
   const std::vector<int> points = heavy_points(out.mass);
@@ -95,6 +117,7 @@ void add_world(const Scene& scene, const WorldLaws& world, const UsedKernels& ke
                                                              {{"mass", masses_of(out.mass, points)}}));
     add_load(scene, index, "g", {scene.gravity.begin(), scene.gravity.end()}, out);
   }
+  if (world.load != nullptr) add_loads(scene, kernels.get(*world.load), out);
   add_contact(scene, world.contact, kernels, out);
 }
 
@@ -168,6 +191,7 @@ void lay_out(const Scene& scene, BuiltScene& out) {
   out.start.v.setZero(3, vertices);
   out.mass.setZero(vertices);
   std::vector<char> fixed(static_cast<size_t>(vertices), 0);
+  std::vector<Guide> guides;
   for (size_t i = 0; i < out.bodies.size(); ++i) {
     const Body& body = out.bodies[i];
     const int first = body.first_vertex, count = body.ordered.vertices();
@@ -185,6 +209,7 @@ void lay_out(const Scene& scene, BuiltScene& out) {
       }
     };
     hold(body.fixed);
+    for (const Guide& guide : body.guides) guides.push_back({first + guide.vertex, guide.along});
     for (const BodyScript& script : body.scripts) {
       hold(script.vertices);
       add_script(script, first, out);
@@ -196,7 +221,9 @@ void lay_out(const Scene& scene, BuiltScene& out) {
   out.system = std::make_unique<System>(vertices);
   out.system->set_fixed(fixed);
   out.system->set_carriers(carriers_of(out.bodies));
+  out.system->set_guides(std::move(guides));
   add_start_noise(scene.start, out.bodies, scene.objects.size(), *out.system, out.start.x, out.start.v);
+  out.system->guide(out.start.v);
 }
 
 std::vector<Probe> probes_of(const Scene& scene, const BuiltScene& built) {
@@ -256,6 +283,7 @@ BuiltScene build_scene(const Scene& scene, const Catalogue& catalogue, const Ker
     kernels.want(world.inertia);
     kernels.want(world.gravity);
     kernels.want(world.orthogonality);
+    kernels.want(world.load);
     want_kernels(world.contact, kernels);
     kernels.load(kernel_source);
   }

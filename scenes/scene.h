@@ -77,6 +77,18 @@ struct SceneRegion : BoxSelector {
   std::string name;
 };
 
+// Vertices in a box that do not move along some axes.
+struct FixedBox : BoxSelector {
+  std::string axes = "xyz";
+};
+
+// A force on the vertices in a box that keeps its direction and size, spread evenly over the faces among them, or else
+// the edges, or else the vertices. One of the two is given.
+struct SceneLoad : BoxSelector {
+  Vector3 force = {0, 0, 0};     // N, of all together
+  Vector3 traction = {0, 0, 0};  // Pa, on faces at rest
+};
+
 struct BoxSource : Located {
   Vector3 size = {1, 1, 1};  // m
   std::array<int, 3> cells = {1, 1, 1};
@@ -163,8 +175,9 @@ struct SceneObject : SceneShape {
   Vector3 velocity = {0, 0, 0};   // m/s
   std::vector<EnergyUse> energies;
   std::vector<SceneRegion> regions;
-  std::vector<BoxSelector> fixed;
+  std::vector<FixedBox> fixed;
   std::vector<ScriptedBox> scripted;
+  std::vector<SceneLoad> loads;
   std::optional<Copies> copies;  // none once a scene has been read: each is an object of its own
 
   // A surface is filled with tetrahedra unless its triangles are asked for.

@@ -153,14 +153,16 @@ Section<SceneRegion> region_section() {
   return out;
 }
 
-Section<BoxSelector> fixed_section() {
-  using T = BoxSelector;
+Section<FixedBox> fixed_section() {
+  using T = FixedBox;
   Section<T> out{"[[object.fixed]]",
                  "A box; the object's vertices in it (after scale, rotate and translate) never move.",
                  {},
                  {},
                  {}};
   out.keys = selector_keys<T>();
+  out.keys.push_back(choice_key("axes", &T::axes, {"xyz", "x", "y", "z", "xy", "xz", "yz"},
+                                "along which they do not move; x alone is a plane of symmetry across x"));
   out.check = [](const std::string&, const T& box) { check_selector(box); };
   return out;
 }
@@ -179,6 +181,28 @@ Section<ScriptedBox> scripted_section() {
   out.check = [](const std::string&, const T& box) {
     check_selector(box);
     check_motion(box.motion);
+  };
+  return out;
+}
+
+Section<SceneLoad> load_section() {
+  using T = SceneLoad;
+  Section<T> out{
+      "[[object.load]]",
+      "A box; a force that keeps its direction and size acts on the object's vertices in it (after scale, rotate "
+      "and translate), spread evenly over the faces of the surface that have all their vertices in it; where "
+      "there are none, over such edges; else over the vertices.",
+      {},
+      {},
+      {}};
+  out.keys = selector_keys<T>();
+  out.keys.push_back(vector_key("force", &T::force, "N", any, Need::optional, "on all of them together"));
+  out.keys.push_back(vector_key("traction", &T::traction, "Pa", any, Need::optional,
+                                "per area of the faces at rest, instead of `force`"));
+  out.check = [](const std::string&, const T& load) {
+    check_selector(load);
+    if (load.wrote("force") == load.wrote("traction"))
+      throw SourceError(load.place, "[[object.load]] needs either 'force' (N) or 'traction' (Pa)");
   };
   return out;
 }
@@ -235,9 +259,10 @@ void check_affine(const SceneObject& object) {
 
 void check_object(const std::string&, const SceneObject& object) {
   check_shape(object);
-  if (object.copies && (!object.fixed.empty() || !object.scripted.empty()))
-    throw SourceError(object.at("copies"),
-                      "copies have no fixed or scripted vertices, as boxes do not move along; write the objects out");
+  if (object.copies && (!object.fixed.empty() || !object.scripted.empty() || !object.loads.empty()))
+    throw SourceError(
+        object.at("copies"),
+        "copies have no fixed, scripted or loaded vertices, as boxes do not move along; write the objects out");
   if (object.affine()) return check_affine(object);
   if (object.wrote("stiffness"))
     throw SourceError(object.at("stiffness"),
@@ -293,6 +318,7 @@ Section<SceneObject> object_section() {
       tables_key("region", &T::regions, region_section, Need::optional, "named parts of the object, for params"),
       tables_key("fixed", &T::fixed, fixed_section, Need::optional, "vertices that never move"),
       tables_key("scripted", &T::scripted, scripted_section, Need::optional, "vertices that follow a script"),
+      tables_key("load", &T::loads, load_section, Need::optional, "forces on parts of it"),
       table_key("copies", &T::copies, copies_section, "the object stands in the scene several times"),
   };
   const std::vector<Key<T>> shape = shape_keys<T>(
