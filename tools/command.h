@@ -26,6 +26,7 @@ void add_eval_command(CLI::App& app, Run& run);
 void add_batch_command(CLI::App& app, Run& run);
 void add_bench_command(CLI::App& app, Run& run);
 void add_compile_command(CLI::App& app, Run& run);
+void add_verify_command(CLI::App& app, Run& run);
 void add_accuracy_command(CLI::App& app, Run& run);
 void add_stress_command(CLI::App& app, Run& run);
 

@@ -81,6 +81,7 @@ int run_command_line(std::vector<std::string> arguments, std::ostream& out, std:
   add_bench_command(app, run);
   add_accuracy_command(app, run);
   add_stress_command(app, run);
+  add_verify_command(app, run);
 
   try {
     std::reverse(arguments.begin(), arguments.end());  // the order CLI11 consumes a vector in

@@ -1,0 +1,55 @@
+// Euler's elastica: a clamped beam under a force at its tip that keeps its direction.
+
+#include <fmt/format.h>
+
+#include "tools/verify/beams.h"
+#include "tools/verify/verify.h"
+
+namespace ergon {
+namespace {
+
+struct ElasticaState {
+  double load, down, back;  // P L^2/(EI), w/L, u/L
+};
+constexpr ElasticaState states[] = {
+    {1, 0.30172, 0.05643}, {2, 0.49346, 0.16064}, {5, 0.71379, 0.38763}, {10, 0.81061, 0.55500}};
+
+void compare(const BeamForm& form, const VerifyRows& rows) {
+  Beam beam = make_beam(form);
+  const int load = beam.model.add_load(beam.tip, Eigen::Vector3d::Zero());
+  double reached = 0;
+  for (const ElasticaState& state : states) {
+    while (reached < state.load) {
+      reached = std::min(state.load, reached + 0.5);
+      beam.model.set_load(load, {0, 0, -reached});
+      beam.model.solve(1e-7);
+    }
+    const Eigen::Vector3d moved = beam.tip_place() - beam.model.mesh().X * beam.tip;
+    const std::string at = fmt::format(" at P L^2/EI = {:g}", state.load);
+    rows.add({"w/L" + at, beam.element, beam.mesh, -moved.z(), state.down, beam.bound(), beam.limits});
+    rows.add({"u/L" + at, beam.element, beam.mesh, -moved.x(), state.back, beam.bound(), beam.limits});
+  }
+}
+
+void run(const VerifyRows& rows) {
+  compare({.element = Element::edge2, .along = 40}, rows);
+  compare({.element = Element::tri3, .along = 40}, rows);
+  compare({.element = Element::hex27, .along = 40}, rows);
+  if (rows.quick()) return;
+  compare({.element = Element::tri3, .along = 40, .right_angled = true}, rows);
+  compare({.element = Element::hex20, .along = 40}, rows);
+  compare({.element = Element::tet10, .along = 40}, rows);
+  compare({.element = Element::hex8, .along = 40}, rows);
+  compare({.element = Element::tet4, .along = 40}, rows);
+}
+
+}  // namespace
+
+VerifyCase elastica_case() {
+  return {"elastica", "large deflections of a cantilever under a dead tip load",
+          "Mattiasson 1981, Numerical results from large deflection beam and frame problems analysed by means of "
+          "elliptic integrals, IJNME 17",
+          run};
+}
+
+}  // namespace ergon

@@ -1,0 +1,52 @@
+// A clamped beam under its own weight: how far its tip hangs down, by how far it reaches.
+
+#include <fmt/format.h>
+
+#include "tools/verify/beams.h"
+#include "tools/verify/verify.h"
+
+namespace ergon {
+namespace {
+
+struct HangingState {
+  double load, ratio;  // rho g A L^3/(EI), drop over reach
+};
+constexpr HangingState states[] = {{1, 0.1246}, {10, 1.0668}, {100, 5.8881}};
+
+void compare(const BeamForm& form, const VerifyRows& rows) {
+  Beam beam = make_beam(form);
+  const int load = beam.model.add_load(beam.length, Eigen::Vector3d::Zero());
+  double reached = 0;
+  for (const HangingState& state : states) {
+    while (reached < state.load) {
+      reached = std::min(state.load, reached + std::max(1.0, reached / 4));
+      beam.model.set_load(load, {0, 0, -reached});
+      beam.model.solve(1e-7);
+    }
+    const Eigen::Vector3d tip = beam.tip_place();
+    const double middle = beam.model.mesh().X.row(2).dot(beam.tip);
+    rows.add({fmt::format("H/W at rho g A L^3/EI = {:g}", state.load), beam.element, beam.mesh,
+              (middle - tip.z()) / tip.x(), state.ratio, beam.bound(), beam.limits});
+  }
+}
+
+void run(const VerifyRows& rows) {
+  compare({.element = Element::edge2, .along = 80}, rows);
+  compare({.element = Element::hex27, .along = 80, .height = 0.005}, rows);
+  if (rows.quick()) return;
+  compare({.element = Element::tri3, .along = 80}, rows);
+  compare({.element = Element::tet10, .along = 80, .height = 0.005}, rows);
+  compare({.element = Element::hex8, .along = 80, .height = 0.005}, rows);
+}
+
+}  // namespace
+
+VerifyCase heavy_elastica_case() {
+  return {"heavy_elastica", "a cantilever under its own weight",
+          "theta'' = -Gamma (1 - s) cos(theta), as Romero, Ly, Rasheed, Charrondiere, Lazarus, Neukirch, "
+          "Bertails-Descoubes "
+          "2021, Physical validation of simulators in computer graphics, TOG 40(4), test Cantilever",
+          run};
+}
+
+}  // namespace ergon

@@ -1,0 +1,64 @@
+// A square plate sags under its weight by much less than its thickness: a quarter of it, by symmetry.
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "runtime/mesh/mesh_build.h"
+#include "runtime/mesh/mesh_tools.h"
+#include "tools/verify/model.h"
+#include "tools/verify/verify.h"
+
+namespace ergon {
+namespace {
+
+constexpr double thickness = 0.01, young = 1e9, poisson = 0.3;  // of a plate of side 1 m
+
+void compare(Element element, int n, bool clamped, std::optional<double> bound, const std::string& note,
+             const VerifyRows& rows) {
+  const double bending = young * std::pow(thickness, 3) / (12 * (1 - poisson * poisson));
+  const double reference = clamped ? 0.00126532 : 0.00406235, weight = 1e-6 * bending / reference;  // N/m^2
+  const Eigen::Vector3d size(0.5, 0.5, thickness);
+  Model model(box_mesh(element, size, {n, n, 1}));
+  const Mesh& mesh = model.mesh();
+  model.add("st_venant_kirchhoff", {{"E", {young}}, {"nu", {poisson}}});
+  model.add_load(lumped_masses(mesh, 1 / thickness), {0, 0, -weight});
+  // The middle of the plate is at the origin, the outer sides at 0.5.
+  model.hold(vertices_where(mesh, [](const Eigen::Vector3d& X) { return X[0] < 1e-9; }), "x");
+  model.hold(vertices_where(mesh, [](const Eigen::Vector3d& X) { return X[1] < 1e-9; }), "y");
+  const auto outside = [](const Eigen::Vector3d& X) { return X[0] > 0.5 - 1e-9 || X[1] > 0.5 - 1e-9; };
+  if (clamped) {
+    model.hold(vertices_where(mesh, outside));
+  } else {
+    // Hard support: along the sides nothing moves, across them the section turns.
+    model.hold(vertices_where(mesh, [](const Eigen::Vector3d& X) { return X[0] > 0.5 - 1e-9; }), "yz");
+    model.hold(vertices_where(mesh, [](const Eigen::Vector3d& X) { return X[1] > 0.5 - 1e-9; }), "xz");
+  }
+  model.solve(1e-13);
+  const int middle = vertex_near(mesh, {0, 0, thickness / 2});
+  const double sag = mesh.X(2, middle) - model.x(2, middle);
+  rows.add({fmt::format("{}: sag D/(q a^4)", clamped ? "clamped" : "supported"), name_of(element),
+            fmt::format("{}x{}", n, n), sag * bending / weight, reference, bound, note});
+}
+
+void run(const VerifyRows& rows) {
+  for (const bool clamped : {false, true}) {
+    compare(Element::hex27, 4, clamped, clamped ? std::nullopt : std::optional(0.01), clamped ? "coarse" : "", rows);
+    if (rows.quick()) continue;
+    compare(Element::hex27, 16, clamped, 0.01, "", rows);
+    compare(Element::hex20, 24, clamped, 0.01, "", rows);
+    compare(Element::tet10, 24, clamped, 0.01, "", rows);
+    compare(Element::hex8, 16, clamped, std::nullopt, "locks in bending", rows);
+  }
+}
+
+}  // namespace
+
+VerifyCase plate_under_gravity_case() {
+  return {"plate_under_gravity", "sag of a square plate under its weight",
+          "Timoshenko, Woinowsky-Krieger 1959, Theory of plates and shells (0.00406 and 0.00126), with "
+          "the digits of their series",
+          run};
+}
+
+}  // namespace ergon

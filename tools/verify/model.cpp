@@ -1,0 +1,111 @@
+#include "tools/verify/model.h"
+
+#include <fmt/format.h>
+
+#include <numeric>
+#include <stdexcept>
+
+#include "runtime/lanes/lanes.h"
+#include "runtime/mesh/mesh_stencils.h"
+#include "symbolic/energy.h"
+#include "tools/installation.h"
+
+namespace ergon {
+
+std::vector<int> vertices_where(const Mesh& mesh, const std::function<bool(const Eigen::Vector3d& X)>& chosen) {
+  std::vector<int> out;
+  for (int v = 0; v < mesh.vertices(); ++v)
+    if (chosen(mesh.X.col(v))) out.push_back(v);
+  return out;
+}
+
+int vertex_near(const Mesh& mesh, const Eigen::Vector3d& place) {
+  Eigen::Index nearest = 0;
+  (mesh.X.colwise() - place).colwise().squaredNorm().minCoeff(&nearest);
+  return static_cast<int>(nearest);
+}
+
+Kernel catalogue_kernel(const std::string& law) { return load_kernel(find_energy(law), "", lanes::best_lanes()); }
+
+Model::Model(Mesh mesh)
+    : x(mesh.X), mesh_(std::move(mesh)), system_(mesh_.vertices()), held_(static_cast<size_t>(mesh_.vertices()), 0) {}
+
+int Model::add(const std::string& law, const Parameters& params, std::optional<int> exactness) {
+  const Energy energy = find_energy(law);
+  const Kernel kernel = load_kernel(energy, "", lanes::best_lanes());
+  if (energy.kind == Energy::Kind::density)
+    return system_.add(Potential::on_mesh(law, kernel, mesh_, 0, params, exactness));
+  const std::vector<int> stencils = stencils_on_mesh(energy.geometry, mesh_);
+  StencilData rest;
+  for (const RestSize& size : rest_sizes(energy.geometry))
+    if (energy.find(size.name) != nullptr) rest[size.name] = rest_size_of(size, energy.geometry, stencils, mesh_.X);
+  return system_.add(Potential::on_stencils(law, kernel, stencils, mesh_.X, params, rest));
+}
+
+int Model::add_load(const Eigen::VectorXd& shares, const Eigen::Vector3d& force) {
+  std::vector<int> points;
+  std::vector<double> of_points;
+  for (int v = 0; v < mesh_.vertices(); ++v) {
+    if (shares[v] == 0) continue;
+    points.push_back(v);
+    of_points.push_back(shares[v]);
+  }
+  return system_.add(Potential::on_stencils("dead_load", catalogue_kernel("dead_load"), points, mesh_.X,
+                                            {{"force", {force[0], force[1], force[2]}}}, {{"share", of_points}}));
+}
+
+void Model::set_load(int load, const Eigen::Vector3d& force) {
+  system_.potential(load).set_param("force", {force[0], force[1], force[2]});
+}
+
+void Model::hold(const std::vector<int>& vertices, std::string_view axes) {
+  for (const int v : vertices)
+    for (const char axis : axes) held_[static_cast<size_t>(v)] |= static_cast<unsigned char>(1 << (axis - 'x'));
+  holds_changed_ = true;
+}
+
+void Model::apply_holds() {
+  if (!holds_changed_) return;
+  std::vector<char> fixed;
+  std::vector<Guide> guides;
+  for (int v = 0; v < mesh_.vertices(); ++v) {
+    const unsigned held = held_[static_cast<size_t>(v)];
+    fixed.push_back(held == 7);
+    if (held == 0 || held == 7) continue;
+    guides.push_back({v, Eigen::Matrix3d::Identity()});
+    for (int axis = 0; axis < 3; ++axis)
+      if ((held >> axis & 1) != 0) guides.back().along(axis, axis) = 0;
+  }
+  system_.set_fixed(fixed);
+  system_.set_guides(std::move(guides));
+  holds_changed_ = false;
+}
+
+NewtonResult Model::solve(double tolerance) {
+  apply_holds();
+  NewtonOptions options;
+  options.tolerance = tolerance;
+  options.on_demand = true;
+  NewtonResult result = newton_.minimise(system_, x, options);
+  if (!result.converged) throw std::runtime_error("no equilibrium was found: " + result.reason);
+  return result;
+}
+
+const BlockMatrix& Model::tangent() {
+  apply_holds();
+  Eigen::Matrix3Xd gradient;
+  system_.hessian(x, Projection::none, gradient, tangent_);
+  return tangent_;
+}
+
+bool Model::stable() { return !solver_.factor(tangent()); }
+
+Eigen::Matrix3Xd Model::reactions() {
+  std::vector<int> all(static_cast<size_t>(system_.potential_count()));
+  std::iota(all.begin(), all.end(), 0);
+  Eigen::Matrix3Xd gradient;
+  system_.gradient_of(all, x, gradient);
+  return gradient;
+}
+
+}  // namespace ergon
