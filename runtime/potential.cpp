@@ -155,11 +155,12 @@ void Potential::follow(const std::string& name, TimedValues values) {
 }
 
 void Potential::set_time(double time) {
-  for (const auto& [name, values] : impl->timed) {
+  for (const auto& timed : impl->timed) {
+    const std::string& name = timed.first;
     const auto is_it = [&](const ErgonInput& input) { return name == input.name && input.role == ERGON_PARAM; };
     const ErgonInput* inputs = impl->kernel->inputs;
     const bool uniform = std::any_of(inputs, inputs + impl->kernel->n_inputs, is_it);
-    uniform ? set_param(name, values(time)) : set_rest(name, values(time));
+    uniform ? set_param(name, timed.second(time)) : set_rest(name, timed.second(time));
   }
 }
 

@@ -36,16 +36,16 @@ TEST(mesh_stencils, cells_must_be_of_their_element) {
   EXPECT_EQ(stencils_on_mesh("triangle", box(Element::tri3, 2)).size(), 3u * 8u);
   EXPECT_EQ(error_of("hinge", box(Element::quad4, 1)),
             "'hinge' stencils are made from a mesh of Tri3 elements; this one has Quad4");
-  EXPECT_EQ(
-      error_of("body_pair", box(Element::tet4, 1)),
-      "no stencils 'body_pair' can be made from a mesh; it has point, edge, corner, triangle, tetrahedron, hinge");
+  EXPECT_EQ(error_of("body_pair", box(Element::tet4, 1)),
+            "no stencils 'body_pair' can be made from a mesh; it has point, edge, corner, triangle, tetrahedron, "
+            "hinge, patch");
 }
 
 TEST(mesh_stencils, kinds_follow_from_the_element) {
   using Kinds = std::vector<std::string>;
   EXPECT_EQ(stencil_kinds(Element::point), (Kinds{"point"}));
   EXPECT_EQ(stencil_kinds(Element::edge2), (Kinds{"point", "edge", "corner"}));
-  EXPECT_EQ(stencil_kinds(Element::tri3), (Kinds{"point", "edge", "triangle", "hinge"}));
+  EXPECT_EQ(stencil_kinds(Element::tri3), (Kinds{"point", "edge", "triangle", "hinge", "patch"}));
   EXPECT_EQ(stencil_kinds(Element::quad4), (Kinds{"point", "edge"}));
   EXPECT_EQ(stencil_kinds(Element::tet4), (Kinds{"point", "edge", "tetrahedron"}));
 }

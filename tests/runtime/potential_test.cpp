@@ -138,11 +138,11 @@ TEST(Potential, RefusesKernelsItCannotEvaluate) {
             }),
             "potential 'block': the kernel of neo has ABI 0, expected 7; compile it again");
   ErgonKernel large = *kernel_of<SpringLaw>(1).table;
-  large.q_vectors = 5;
+  large.q_vectors = 6;
   EXPECT_EQ(message_of([&] {
               Potential::on_stencils("ropes", {nullptr, &large}, {0, 1}, kThree, {{"k", {1.0}}}, {});
             }),
-            "potential 'ropes': spring has 2 points and 5 vectors in q; at most 27 and 4 can be evaluated");
+            "potential 'ropes': spring has 2 points and 6 vectors in q; at most 27 and 5 can be evaluated");
 }
 
 TEST(Potential, EvaluationNeedsEveryLag) {

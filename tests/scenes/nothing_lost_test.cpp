@@ -28,7 +28,7 @@ struct Stretch {
   int least, most;
   double work;
 };
-constexpr Stretch stretches[] = {{0.04, 2, 12, 3e5}, {0.01, 2, 6, 1e5}, {0.001, 2, 6, 1e5}};
+constexpr Stretch stretches[] = {{0.04, 2, 12, 6e4}, {0.01, 2, 6, 2e4}, {0.001, 2, 6, 2e4}};
 
 class SlowNothingLost : public testing::TestWithParam<std::tuple<std::string, int>> {};
 

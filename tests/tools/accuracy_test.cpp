@@ -22,6 +22,9 @@ class EveryEnergyIsAccurate : public CommandTest, public testing::WithParamInter
 // Relative errors of value, gradient and Hessian, in units of 2^-53, over 1 + the condition of their state. A backward
 // stable evaluation in a few dozen roundings makes errors of this size; measured are 5 at most.
 constexpr double kBound = 16;
+// What a law with memory stores is the energy of a trial state less that of what flows in the step: where the trial is
+// n times beyond the limit, the difference loses a factor of n, which the states drawn here let be 100.
+constexpr double kBoundWithMemory = 16 * kBound;
 
 TEST_P(EveryEnergyIsAccurate, WithinItsCondition) {
   const Energy& energy = test::shipped(GetParam());
@@ -33,11 +36,12 @@ TEST_P(EveryEnergyIsAccurate, WithinItsCondition) {
     EXPECT_GE(all.size(), 12u) << "too few strains with a state";
     for (const Accuracy& at : all) {
       for (int entry = 0; entry < 3; ++entry)
-        EXPECT_LE(at.excess[entry], kBound)
+        EXPECT_LE(at.excess[entry], energy.updates.empty() ? kBound : kBoundWithMemory)
             << energy.name << " " << case_name << " strain " << at.strain << " entry " << entry;
       // What is stress-free at rest is well conditioned in its displacements: then few ulps are few in the result. Laws
-      // that are part of a sum have stress there.
-      if (at.strain <= 0.1 && energy.kind == Energy::Kind::density && energy.part_of.empty()) {
+      // that are part of a sum, or that remember, have stress there.
+      if (at.strain <= 0.1 && energy.kind == Energy::Kind::density && energy.part_of.empty() &&
+          energy.updates.empty()) {
         EXPECT_LE(at.emitted[0].median, 16) << energy.name << " strain " << at.strain;
         EXPECT_LE(at.emitted[1].median, 16) << energy.name << " strain " << at.strain;
       }

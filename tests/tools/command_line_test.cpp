@@ -40,9 +40,9 @@ TEST_F(CommandLine, TellsItsVersionAndHelps) {
 }
 
 TEST_F(CommandLine, NamesWhatWasMisspelt) {
-  expect(
-      "", 2,
-      "'ergon' needs a command: run, batch, new, check, show, plot, fit, compile, cost, eval, bench, accuracy, stress");
+  expect("", 2,
+         "'ergon' needs a command: run, batch, new, check, show, plot, fit, compile, cost, eval, bench, accuracy, "
+         "stress, verify");
   expect("chek x", 2, "unknown command 'ergon chek'; did you mean 'check'?");
   expect("bench kernel", 2, "unknown command 'ergon bench kernel'; did you mean 'kernels'?");
   expect("bench", 2, "'ergon bench' needs a command: kernels, compile, contact, ccd, scene");

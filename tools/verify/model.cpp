@@ -38,7 +38,7 @@ int Model::add(const std::string& law, const Parameters& params, std::optional<i
   const std::vector<int> stencils = stencils_on_mesh(energy.geometry, mesh_);
   StencilData rest;
   for (const RestSize& size : rest_sizes(energy.geometry))
-    if (energy.find(size.name) != nullptr) rest[size.name] = rest_size_of(size, energy.geometry, stencils, mesh_.X);
+    if (energy.find(size.name) != nullptr) rest[size.name] = rest_size_of(size, energy.geometry, stencils, mesh_);
   return system_.add(Potential::on_stencils(law, kernel, stencils, mesh_.X, params, rest));
 }
 

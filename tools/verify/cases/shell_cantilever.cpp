@@ -32,8 +32,11 @@ Mesh strip(Element element, int along, bool right_angled) {
   return mesh;
 }
 
-void compare(Element element, int along, bool right_angled, std::optional<double> bound, const std::string& note,
-             const VerifyRows& rows) {
+// Bending of sheets is that of hinges or of a Koiter shell.
+enum class Bending { hinges, koiter };
+
+void compare(Element element, int along, bool right_angled, Bending bending, std::optional<double> bound,
+             const std::string& note, const VerifyRows& rows) {
   const bool solid = dimension_of(element) == 3;
   Model model(strip(element, along, right_angled));
   const Mesh& mesh = model.mesh();
@@ -41,7 +44,10 @@ void compare(Element element, int along, bool right_angled, std::optional<double
     model.add("st_venant_kirchhoff", {{"E", {young}}, {"nu", {0.0}}});
   } else {
     model.add("st_venant_kirchhoff_membrane", {{"E", {young}}, {"nu", {0.0}}, {"h", {thickness}}});
-    model.add("discrete_shell_hinge", {{"k", {young * thickness * thickness * thickness / 72}}});
+    if (bending == Bending::koiter)
+      model.add("koiter_bending", {{"E", {young}}, {"nu", {0.0}}, {"h", {thickness}}});
+    else
+      model.add("discrete_shell_hinge", {{"k", {young * thickness * thickness * thickness / 72}}});
   }
   const double held = solid ? 1e-9 : 0.51 * length / (along - 0.5);
   model.hold(vertices_where(mesh, [&](const Eigen::Vector3d& X) { return X[0] < held; }));
@@ -56,7 +62,8 @@ void compare(Element element, int along, bool right_angled, std::optional<double
       if (std::abs(state.part * steps - step) > 1e-9) continue;
       const Eigen::Vector3d moved = (model.x - mesh.X) * tip;
       const std::string at = fmt::format(" at P = {:g}", state.part * most);
-      const std::string name = name_of(element) + (solid ? "" : right_angled ? ", hinges, right" : ", hinges");
+      const std::string law = solid ? "" : bending == Bending::koiter ? ", Koiter" : ", hinges";
+      const std::string name = name_of(element) + law + (!solid && right_angled ? ", right" : "");
       const std::string cells = solid ? fmt::format("{}x2", along) : fmt::format("{} cells", mesh.cell_count());
       rows.add({"-U" + at, name, cells, -moved.x(), state.back, bound, note});
       rows.add({"W" + at, name, cells, moved.z(), state.up, bound, note});
@@ -65,13 +72,17 @@ void compare(Element element, int along, bool right_angled, std::optional<double
 }
 
 void run(const VerifyRows& rows) {
-  compare(Element::hex27, 16, false, rows.quick() ? std::optional(0.02) : std::nullopt, "coarse", rows);
-  compare(Element::tri3, 60, false, std::nullopt, "hinges: free sides are softer, in proportion to cell/width", rows);
+  const auto none = Bending::hinges;
+  compare(Element::hex27, 16, false, none, rows.quick() ? std::optional(0.02) : std::nullopt, "coarse", rows);
+  compare(Element::tri3, 60, false, Bending::hinges, std::nullopt,
+          "hinges: free sides are softer, in proportion to cell/width", rows);
   if (rows.quick()) return;
-  compare(Element::hex27, 32, false, 0.01, "", rows);
-  compare(Element::hex20, 32, false, 0.01, "", rows);
-  compare(Element::tri3, 60, true, std::nullopt,
+  compare(Element::hex27, 32, false, none, 0.01, "", rows);
+  compare(Element::hex20, 32, false, none, 0.01, "", rows);
+  compare(Element::tri3, 60, true, Bending::hinges, std::nullopt,
           "hinges on right angles: a free strip is 0.8 times as stiff, as bending twists it", rows);
+  compare(Element::tri3, 60, false, Bending::koiter, 0.01, "", rows);
+  compare(Element::tri3, 60, true, Bending::koiter, 0.01, "", rows);
 }
 
 }  // namespace
