@@ -17,24 +17,6 @@ struct StretchFrame {
   Real strain[Q];
 };
 
-// The rotation by b that takes the off-diagonal entry of a symmetric 2x2 matrix away: tan(2 b) = y/x of its difference
-// of diagonal entries x and twice that entry, y. The larger eigenvalue belongs to (c, s).
-struct PlaneTurn {
-  Real c, s;
-};
-
-inline PlaneTurn plane_turn(Real x, Real y) {
-  const Real hypotenuse = x * x + y * y;
-  const Mask turned = less(splat(kNegligible), hypotenuse);
-  const Real inverse = rsqrt(max(hypotenuse, splat(kNegligible)));
-  const Real cos_2b = select(turned, abs(x) * inverse, splat(1)), sin_2b = select(turned, abs(y) * inverse, splat(0));
-  const Real larger_squared = 0.5 + 0.5 * cos_2b;
-  const Real inverse_larger = rsqrt(larger_squared);
-  const Real larger = larger_squared * inverse_larger, smaller = 0.5 * sin_2b * inverse_larger;
-  const Mask first = less_equal(splat(0), x);
-  return {select(first, larger, smaller), copysign(select(first, smaller, larger), y)};
-}
-
 // s - 1 of the eigenvalue l = s^2 - 1.
 inline Real strain_of(Real l) { return l / (1 + sqrt(1 + l)); }
 

@@ -15,15 +15,13 @@ struct Svd3 {
   Real s[3];
 };
 
-// M = R(a) diag(s0, s1) R(b)' with rotations by the angles a and b, s0 >= |s1|.
-struct PlaneSvd {
-  Real cos_a, sin_a, cos_b, sin_b, s0, s1;
+// The rotation by b that takes the off-diagonal entry of a symmetric 2x2 matrix away: tan(2 b) = y/x of its difference
+// of diagonal entries x and twice that entry, y. The larger eigenvalue belongs to (c, s).
+struct PlaneTurn {
+  Real c, s;
 };
 
-inline PlaneSvd plane_svd(Real m00, Real m01, Real m10, Real m11) {
-  // b diagonalises M'M: tan(2 b) = y/x.
-  const Real x = (m00 * m00 + m10 * m10) - (m01 * m01 + m11 * m11);
-  const Real y = 2 * (m00 * m01 + m10 * m11);
+inline PlaneTurn plane_turn(Real x, Real y) {
   const Real hypotenuse = x * x + y * y;
   const Mask turned = less(splat(kNegligible), hypotenuse);
   const Real inverse = rsqrt(max(hypotenuse, splat(kNegligible)));
@@ -32,9 +30,20 @@ inline PlaneSvd plane_svd(Real m00, Real m01, Real m10, Real m11) {
   const Real inverse_larger = rsqrt(larger_squared);
   const Real larger = larger_squared * inverse_larger, smaller = 0.5 * sin_2b * inverse_larger;
   const Mask first = less_equal(splat(0), x);
+  return {select(first, larger, smaller), copysign(select(first, smaller, larger), y)};
+}
+
+// M = R(a) diag(s0, s1) R(b)' with rotations by the angles a and b, s0 >= |s1|.
+struct PlaneSvd {
+  Real cos_a, sin_a, cos_b, sin_b, s0, s1;
+};
+
+inline PlaneSvd plane_svd(Real m00, Real m01, Real m10, Real m11) {
+  const PlaneTurn b =
+      plane_turn((m00 * m00 + m10 * m10) - (m01 * m01 + m11 * m11), 2 * (m00 * m01 + m10 * m11));  // of M'M
   PlaneSvd r;
-  r.cos_b = select(first, larger, smaller);
-  r.sin_b = copysign(select(first, smaller, larger), y);
+  r.cos_b = b.c;
+  r.sin_b = b.s;
   const Real p0 = m00 * r.cos_b + m01 * r.sin_b, p1 = m10 * r.cos_b + m11 * r.sin_b;
   const Real squared = p0 * p0 + p1 * p1;
   const Mask regular = less(splat(kNegligible), squared);
