@@ -7,29 +7,15 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "scenes/comma_lines.h"
+
 namespace ergon {
 namespace {
-
-std::string without_blanks(const std::string& text) {
-  const size_t first = text.find_first_not_of(" \t\r\"");
-  if (first == std::string::npos) return "";
-  return text.substr(first, text.find_last_not_of(" \t\r\"") - first + 1);
-}
-
-std::vector<std::string> between_commas(const std::string& line) {
-  std::vector<std::string> out;
-  for (size_t at = 0; at <= line.size();) {
-    const size_t end = std::min(line.find(',', at), line.size());
-    out.push_back(without_blanks(line.substr(at, end - at)));
-    at = end + 1;
-  }
-  return out;
-}
 
 NumberTable::Column named_column(const std::string& text, const Place& place) {
   const size_t open = text.find('(');
   NumberTable::Column out;
-  out.name = without_blanks(text.substr(0, open));
+  out.name = trimmed(text.substr(0, open));
   if (open == std::string::npos) return out;
   if (text.back() != ')')
     throw SourceError(place, fmt::format("expected a column such as `E (kPa)`, found '{}'", text));
@@ -67,12 +53,9 @@ NumberTable read_number_table(const std::string& file, const Place& place) {
   if (!stream) throw SourceError(place, fmt::format("cannot open {}", file));
   NumberTable out;
   out.file = file;
-  int number = 0;
-  for (std::string line; std::getline(stream, line);) {
-    const Place at{file, ++number, 1};
-    const std::string content = without_blanks(line.substr(0, line.find('#')));
-    if (content.empty()) continue;
-    const std::vector<std::string> words = between_commas(content);
+  for (const CommaLine& line : comma_lines(stream)) {
+    const Place at{file, line.number, 1};
+    const std::vector<std::string>& words = line.cells;
     if (out.columns.empty()) {
       for (const std::string& word : words) out.columns.push_back(named_column(word, at));
       continue;
@@ -81,7 +64,7 @@ NumberTable read_number_table(const std::string& file, const Place& place) {
       throw SourceError(at, fmt::format("expected {} values, found {}", out.columns.size(), words.size()));
     for (size_t i = 0; i < words.size(); ++i)
       out.columns[i].values.push_back(out.columns[i].unit.scale * number_in(words[i], at));
-    out.lines.push_back(number);
+    out.lines.push_back(line.number);
   }
   if (out.lines.empty()) throw SourceError({file, 0, 0}, "holds no values");
   return out;

@@ -8,27 +8,12 @@
 #include <fstream>
 #include <optional>
 
+#include "scenes/comma_lines.h"
 #include "symbolic/analyse.h"
 #include "tools/load_path.h"
 
 namespace ergon {
 namespace {
-
-std::string trimmed(const std::string& text) {
-  const size_t first = text.find_first_not_of(" \t\r\"");
-  if (first == std::string::npos) return "";
-  return text.substr(first, text.find_last_not_of(" \t\r\"") - first + 1);
-}
-
-std::vector<std::string> cells_of(const std::string& line) {
-  std::vector<std::string> cells;
-  for (size_t at = 0; at <= line.size();) {
-    const size_t end = std::min(line.find(',', at), line.size());
-    cells.push_back(trimmed(line.substr(at, end - at)));
-    at = end + 1;
-  }
-  return cells;
-}
 
 class StressReader {
  public:
@@ -39,14 +24,9 @@ class StressReader {
   std::vector<StressPoint> read() {
     std::ifstream stream(file_);
     if (!stream) throw SourceError({file_, 0, 0}, "cannot open the file of measured stress");
-    for (std::string line; std::getline(stream, line);) {
-      ++line_;
-      const std::string content = trimmed(line.substr(0, line.find('#')));
-      if (content.empty()) continue;
-      if (columns_ == 0)
-        header(cells_of(content));
-      else
-        row(cells_of(content));
+    for (const CommaLine& line : comma_lines(stream)) {
+      line_ = line.number;
+      columns_ == 0 ? header(line.cells) : row(line.cells);
     }
     if (points_.empty()) throw SourceError({file_, 0, 0}, "holds no measured stress");
     return std::move(points_);
