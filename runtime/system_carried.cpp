@@ -46,10 +46,10 @@ void make_room(AlignedVector<double>& room, int blocks) {
   if (room.size() < size) room.resize(size, 0.0);
 }
 
-std::vector<PairKey> each_once(std::vector<PairKey> keys) {
-  std::sort(keys.begin(), keys.end());
-  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-  return keys;
+void each_once(const std::vector<PairKey>& keys, std::vector<PairKey>& sorted) {
+  sorted = keys;
+  std::sort(sorted.begin(), sorted.end());
+  sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
 }
 
 size_t place_in(const std::vector<PairKey>& sorted, PairKey key) {
@@ -124,10 +124,11 @@ void System::Impl::number_vertices() {
 }
 
 // From `count` pairs of numbers in room.row and room.column to the matrix blocks that they become.
-void SystemTerm::carry_pairs(const SystemRoom& room, int count, const SystemNumbers& numbers, SystemChunk& part) {
+void SystemTerm::carry_pairs(SystemRoom& room, int count, const SystemNumbers& numbers, SystemChunk& part) {
+  auto& [halves, half_keys, wholes, whole_keys, blocks, block_keys, reached] = room.carry;
   const auto pairs = static_cast<size_t>(count);
   part.pairs.resize(pairs);
-  std::vector<PairKey> halves(pairs);
+  halves.resize(pairs);
   for (size_t i = 0; i < pairs; ++i) {
     const int row = room.row[i], column = room.column[i];
     const VertexBlocks u = numbers.blocks_of(row), v = numbers.blocks_of(column);
@@ -140,9 +141,9 @@ void SystemTerm::carry_pairs(const SystemRoom& room, int count, const SystemNumb
     }
     halves[i] = key_of(turned ? column : row, low.first);
   }
-  const std::vector<PairKey> half_keys = each_once(halves);
+  each_once(halves, half_keys);
   part.halves.resize(half_keys.size());
-  std::vector<PairKey> wholes(half_keys.size());
+  wholes.resize(half_keys.size());
   for (size_t h = 0, from = 0; h < half_keys.size(); ++h) {
     const VertexBlocks high = numbers.blocks_of(high_of(half_keys[h]));
     const int low = low_of(half_keys[h]), columns = numbers.blocks_of(low).count;
@@ -150,14 +151,14 @@ void SystemTerm::carry_pairs(const SystemRoom& room, int count, const SystemNumb
     wholes[h] = key_of(high.first, low);
     from += static_cast<size_t>(columns);
   }
-  std::vector<char> reached(half_keys.size(), 0);
+  reached.assign(half_keys.size(), 0);
   for (size_t i = 0; i < pairs; ++i) {
     const size_t h = place_in(half_keys, halves[i]);
     part.pairs[i].half = part.halves[h].from;
     part.pairs[i].stored = std::exchange(reached[h], char{1}) == 0;
   }
 
-  const std::vector<PairKey> whole_keys = each_once(wholes);
+  each_once(wholes, whole_keys);
   part.wholes.resize(whole_keys.size());
   reached.assign(whole_keys.size(), 0);
   for (size_t h = 0; h < half_keys.size(); ++h) {
@@ -168,7 +169,7 @@ void SystemTerm::carry_pairs(const SystemRoom& room, int count, const SystemNumb
     part.wholes[w] = {0, half.rows, half.columns, high_of(whole_keys[w]) == low_of(whole_keys[w]) && half.rows > 1, 0};
   }
   // The matrix blocks, by column and then row, and where each is in that order.
-  std::vector<PairKey> blocks;
+  blocks.clear();
   int from = 0;
   for (size_t w = 0; w < whole_keys.size(); ++w) {
     CarriedWhole& whole = part.wholes[w];
@@ -182,12 +183,12 @@ void SystemTerm::carry_pairs(const SystemRoom& room, int count, const SystemNumb
     }
   }
   for (CarriedHalf& half : part.halves) half.whole = part.wholes[static_cast<size_t>(half.whole)].from;
-  const std::vector<PairKey> sorted = each_once(blocks);
+  each_once(blocks, block_keys);
   part.places.clear();
   part.row.clear();
   part.column.clear();
-  for (const PairKey block : blocks) part.places.push_back(static_cast<int>(place_in(sorted, block)));
-  for (const PairKey block : sorted) {
+  for (const PairKey block : blocks) part.places.push_back(static_cast<int>(place_in(block_keys, block)));
+  for (const PairKey block : block_keys) {
     part.row.push_back(low_of(block));
     part.column.push_back(high_of(block));
   }

@@ -2,6 +2,7 @@
 // What a System holds. Included by system*.cpp only.
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "runtime/aligned.h"
@@ -63,6 +64,13 @@ struct CarriedWhole {  // of two bodies, or of one: then half of it, to which th
   int places = 0;  // into SystemChunk::places: of all blocks, or of those with column <= row
 };
 
+// Room for finding where carried pairs go: pairs of numbers, two in each word.
+struct CarryRoom {
+  using Pairs = std::vector<std::uint64_t>;
+  Pairs halves, half_keys, wholes, whole_keys, blocks, block_keys;
+  std::vector<char> reached;
+};
+
 // Room of one thread.
 struct SystemRoom {
   AlignedVector<double> sums;
@@ -71,6 +79,7 @@ struct SystemRoom {
   std::vector<int> place;  // per vertex of the system
   std::vector<int> block, places, rank, row, column;
   std::vector<unsigned long long> bits;
+  CarryRoom carry;
   lanes::Workspace view() { return {sums.data(), scratch.data()}; }
 };
 
@@ -146,7 +155,7 @@ struct SystemTerm {
 
  private:
   void list_vertices(std::vector<SystemRoom>& rooms);
-  static void carry_pairs(const SystemRoom& room, int count, const SystemNumbers& numbers, SystemChunk& part);
+  static void carry_pairs(SystemRoom& room, int count, const SystemNumbers& numbers, SystemChunk& part);
 };
 
 struct System::Impl {

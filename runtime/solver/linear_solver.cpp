@@ -15,13 +15,13 @@ namespace ergon {
 
 namespace {
 
-// Below this many operations per factorisation the threads of the BLAS cost more than they bring: its workers spin for a
-// while after each call.
+// Below this many operations per factorisation the threads of the BLAS cost more than they bring: its workers spin for
+// a while after each call.
 constexpr double flops_worth_threads = 1e9;
 
 // While it lives, CHOLMOD keeps to the calling thread, and so does OpenBLAS unless `threaded` (other BLAS libraries are
-// left as they are). CHOLMOD would open a team of four for each pair of supernodes, however few the cores: two thirds of
-// the processor time at 2,000 unknowns, a third of the time at 26,000.
+// left as they are). CHOLMOD would open a team of four for each pair of supernodes, however few the cores: two thirds
+// of the processor time at 2,000 unknowns, a third of the time at 26,000.
 class Threads {
  public:
   explicit Threads(bool threaded) : levels_(omp_get_max_active_levels()) {

@@ -10,6 +10,7 @@
 
 #include "runtime/lanes/lanes.h"
 #include "runtime/system.h"
+#include "tests/runtime/count_allocations.h"
 #include "tests/runtime/dense_oracle.h"
 #include "tests/runtime/mesh_helpers.h"
 
@@ -191,6 +192,32 @@ TEST(SystemCarried, ResultsDoNotDependOnTheNumberOfThreads) {
     if (first.empty()) first = matrix.values();
     EXPECT_EQ(first, matrix.values());
   }
+  omp_set_num_threads(before);
+}
+
+TEST(SystemCarried, AsksForNoMemoryOnceListsWereThisLong) {
+  const int before = omp_get_max_threads();
+  omp_set_num_threads(1);
+  Carried c;
+  System system(kVertices);
+  system.set_fixed(c.fixed);
+  system.set_carriers(c.carriers);
+  const int hinge = system.add(Potential::on_stencils("hinge", kernel_of<HingeLaw>(lanes::best_lanes()), {}, c.x,
+                                                      {{"k", {0.5}}}, {{"area", {}}}));
+  std::vector<std::vector<int>> lists;
+  for (int i = 0; i < 9; ++i) lists.push_back(c.stencils(300 - i, 4));
+  Eigen::Matrix3Xd gradient;
+  BlockMatrix matrix;
+  const auto iterate = [&](size_t i) {
+    system.potential(hinge).set_stencils(lists[i], c.x, {{"area", std::vector<double>(lists[i].size() / 4, 1.0)}});
+    const long asked = allocations();
+    system.hessian(c.x, Projection::clamp, gradient, matrix);
+    return allocations() - asked;
+  };
+  for (int round = 0; round < 4; ++round) {
+    for (size_t i = 0; i < lists.size(); ++i) iterate(i);
+  }
+  for (size_t i = 0; i < lists.size(); ++i) EXPECT_EQ(iterate(i), 0) << i;
   omp_set_num_threads(before);
 }
 
