@@ -59,9 +59,10 @@ SectionText text_of(const Section<T>& section) {
   return out;
 }
 
-// The entries of a table as they stand in the file, so that the first mistake is the one reported.
+// The entries of a table as they stand in the file, so that the first mistake is the one reported. Those that were
+// added to what was read stand nowhere: all of them come first.
 inline auto in_order_of_text(const toml::table& table) {
-  std::map<std::pair<unsigned, unsigned>, std::pair<const toml::key&, const toml::node&>> out;
+  std::multimap<std::pair<unsigned, unsigned>, std::pair<const toml::key&, const toml::node&>> out;
   for (const auto& [key, node] : table)
     out.emplace(std::pair(key.source().begin.line, key.source().begin.column),
                 std::pair(std::cref(key), std::cref(node)));

@@ -186,6 +186,7 @@ RunSummary run_scene(const Scene& scene, BuiltScene& built, const RunOptions& op
   std::optional<StepControl> control;
   if (built.limits) control.emplace(stepper, *built.limits);
   RunSummary summary = summary_of_start(scene, built, stepper.energies(state).total);
+  if (options.observe) options.observe(state);
   while (!is_done(state, built) && summary.failure.empty()) {
     if (options.stop && options.stop()) {
       summary.stopped = true;
@@ -202,6 +203,7 @@ RunSummary run_scene(const Scene& scene, BuiltScene& built, const RunOptions& op
       output->state(state);
     }
     if (options.progress) options.progress(record, built.steps);
+    if (options.observe && record.accepted) options.observe(state);
   }
   {
     Stopwatch watch(output_seconds);

@@ -15,6 +15,8 @@ struct RunOptions {
   std::string folder;  // "": nothing is written
   // Called after each step with its record and the number of steps of the whole run.
   std::function<void(const StepRecord& record, long steps)> progress;
+  // Given the first state, and the one after each step that was accepted.
+  std::function<void(const State& state)> observe;
   // Asked before each step; true ends the run there.
   std::function<bool()> stop;
   State* last_state = nullptr;  // receives the last good state

@@ -22,6 +22,7 @@ void add_step(RunSummary& summary, const StepRecord& record) {
   }
   summary.newton_iterations += record.newton_iterations;
   summary.linear_solves += record.factorisations - record.shifts;
+  summary.factor_flops += record.factor_flops;
   summary.halvings += record.halvings;
   summary.most_contacts = std::max(summary.most_contacts, record.contacts);
   StepSeconds& sum = summary.step_seconds;
@@ -70,6 +71,7 @@ std::string to_json(const RunSummary& s) {
   json["unconverged_steps"] = s.unconverged_steps;
   json["newton_iterations"] = s.newton_iterations;
   json["linear_solves"] = s.linear_solves;
+  json["factor_flops"] = s.factor_flops;
   json["linear_iterations"] = 0;  // no iterative linear solver was used
   json["halvings"] = s.halvings;
   json["most_contacts"] = s.most_contacts;

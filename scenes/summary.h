@@ -23,7 +23,8 @@ struct RunSummary {
   long unconverged_steps = 0;  // accepted all the same
   long newton_iterations = 0;
   long linear_solves = 0;
-  long halvings = 0;  // of line searches
+  double factor_flops = 0;  // of all factorisations
+  long halvings = 0;        // of line searches
   int most_contacts = 0;
   double smallest_gap = std::numeric_limits<double>::infinity();  // m, over all steps
   // J, largest rise of kinetic and stored energy in a step, less what a change of barrier stiffness added; at most 0

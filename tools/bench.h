@@ -1,5 +1,5 @@
 #pragma once
-// Measurements: kernels on a mesh, the compiler, contact, whole scenes.
+// Measurements: kernels on a mesh, the compiler, contact, whole scenes, and what accuracy costs.
 
 #include <iosfwd>
 #include <string>
@@ -52,5 +52,29 @@ struct BenchContact {
 // The parts of contact on two cloths of side 1 m with (cells + 1)^2 vertices each, noisy and close enough for the
 // barrier to act everywhere: one row per part. Throws SourceError and InputError.
 void bench_contact(const BenchContact& options, Rows& rows);
+
+struct BenchAccuracy {
+  std::vector<std::string> problems;  // empty: all
+  bool brief = false;                 // a few coarse settings
+  bool again = false;                 // runs that the folder holds too
+  bool json = false;
+  bool progress = false;                // a line for each run
+  std::string folder = "out/accuracy";  // of accuracy.csv, PROBLEM.svg and, to go on from, every run
+};
+// Families of settings (element, mesh, integrator, dt, tolerance, precision) over the problems of
+// tools/study/accuracy_problems.h: the error of each run against a reference, its time and its work; for each problem
+// the Pareto front and the cheapest settings within 10, 1 and 0.1 percent. Throws SourceError, InputError, OutputError.
+void bench_accuracy(const BenchAccuracy& options, std::ostream& out);
+
+struct BenchStopping {
+  std::string study;  // tolerance, friction or barrier; "": all
+  bool brief = false;
+  bool again = false;
+  bool json = false;
+  std::string folder = "out/stopping";  // of every run, to go on from
+};
+// What Newton's tolerance, the lag of friction and the barrier's reach and stiffness add to the error, each varied by
+// itself, beside what dt and mesh make of it. Throws as bench_accuracy does.
+void bench_stopping(const BenchStopping& options, std::ostream& out);
 
 }  // namespace ergon

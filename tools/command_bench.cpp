@@ -117,16 +117,54 @@ void add_scene(CLI::App& bench, Run& run) {
   });
 }
 
+void add_accuracy(CLI::App& bench, Run& run) {
+  CLI::App* command = bench.add_subcommand(
+      "accuracy", "What a digit costs: error against run time over elements, meshes, integrators, steps, tolerances");
+  auto options = std::make_shared<BenchAccuracy>();
+  command->add_option("--problem", options->problems, "cantilever, column, cloth, bounce or buckling; default: all")
+      ->take_all();
+  command->add_option("--out", options->folder, "for the table (CSV), plots (SVG) and what was run");
+  command->add_flag("--brief", options->brief, "a few coarse settings, seconds in all");
+  command->add_flag("--again", options->again, "run what the folder holds too");
+  command->add_flag("--progress", options->progress, "a line for each run");
+  command->add_flag("--json", options->json, "one JSON object per line instead of text");
+  command->callback([options, &run] {
+    run = [options](std::ostream& out) {
+      bench_accuracy(*options, out);
+      return exit_done;
+    };
+  });
+}
+
+void add_stopping(CLI::App& bench, Run& run) {
+  CLI::App* command = bench.add_subcommand(
+      "stopping", "What tolerances of iterations and stiffnesses of contact add to the error of dt and mesh");
+  auto options = std::make_shared<BenchStopping>();
+  command->add_option("--study", options->study, "tolerance, friction or barrier; default: all");
+  command->add_option("--out", options->folder, "for what was run");
+  command->add_flag("--brief", options->brief, "a part of each study, seconds in all");
+  command->add_flag("--again", options->again, "run what the folder holds too");
+  command->add_flag("--json", options->json, "one JSON object per line instead of text");
+  command->callback([options, &run] {
+    run = [options](std::ostream& out) {
+      bench_stopping(*options, out);
+      return exit_done;
+    };
+  });
+}
+
 }  // namespace
 
 void add_bench_command(CLI::App& app, Run& run) {
-  CLI::App* command = app.add_subcommand("bench", "Measures kernels, the compiler, contact, or a scene");
+  CLI::App* command = app.add_subcommand("bench", "Measures kernels, the compiler, contact, a scene, or accuracy");
   command->require_subcommand(1);
   add_kernels(*command, run);
   add_compile(*command, run);
   add_contact(*command, run);
   add_ccd(*command, run);
   add_scene(*command, run);
+  add_accuracy(*command, run);
+  add_stopping(*command, run);
 }
 
 }  // namespace ergon

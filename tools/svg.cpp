@@ -142,10 +142,11 @@ class ChartDrawing {
   void legend() {
     size_t longest = 0;
     for (const ChartLine& line : chart_.lines) longest = std::max(longest, line.label.size());
-    const double x = x0_ + 8;
+    const double wide = 32 + 6.4 * static_cast<double>(longest);
+    const double x = chart_.legend_right ? x0_ + width - wide - 4 : x0_ + 8;
     out_ += fmt::format(
         "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"#fff\" fill-opacity=\"0.8\"/>\n", x,
-        y0_ + 4, 32 + 6.4 * static_cast<double>(longest), 4 + 14 * static_cast<double>(chart_.lines.size()));
+        y0_ + 4, wide, 4 + 14 * static_cast<double>(chart_.lines.size()));
     for (size_t i = 0; i < chart_.lines.size(); ++i) {
       const double y = y0_ + 14 + 14 * static_cast<double>(i);
       const char* color = color_of(i);

@@ -19,6 +19,7 @@ struct Chart {
   std::string title, x_label, y_label;
   std::vector<ChartLine> lines;
   bool log_x = false, log_y = false;
+  bool legend_right = false;
 };
 
 // An <svg> element of all charts in a row under one title (none where it is ""). A legend where a chart has several

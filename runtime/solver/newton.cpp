@@ -263,6 +263,7 @@ double Newton::find_direction(System& system, const Eigen::Matrix3Xd& x, const N
       const Stopwatch watch(result.seconds.factor);
       failed = solver_.factor(matrix_, shift);
       ++result.factorisations;
+      result.factor_flops += solver_.factor_flops();
     }
     if (!failed) {
       if (const std::optional<double> slope = solve_direction(system, result)) return *slope;

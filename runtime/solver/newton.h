@@ -69,6 +69,7 @@ struct NewtonResult {
   int halvings = 0;
   int shifts = 0;  // factorisations repeated with a larger diagonal
   int factorisations = 0;
+  double factor_flops = 0;       // of all factorisations
   int projected_iterations = 0;  // with Hessians projected, if in part
   int reused_factors = 0;        // last steps solved with the factor of the step before: not among the iterations
   long indefinite = 0;           // Hessians changed by projection, summed over iterations

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "runtime/error.h"
+#include "runtime/solver/step_cost.h"
 
 namespace ergon {
 
@@ -15,23 +16,6 @@ constexpr double growth = 2;        // of dt, after a step that was accepted
 constexpr double shrinkage = 0.2;   // of dt, after one that was not accurate enough
 constexpr double safety = 0.9;      // of the dt that would have had the error that is tolerated
 constexpr double same_time = 1e-9;  // of the interval: times that differ by less are one
-
-// What a step that was refused cost, with that of the next try.
-void add_cost(const StepRecord& refused, StepRecord& record) {
-  record.newton_iterations += refused.newton_iterations;
-  record.follow_iterations += refused.follow_iterations;
-  record.factorisations += refused.factorisations;
-  record.halvings += refused.halvings;
-  record.shifts += refused.shifts;
-  record.indefinite += refused.indefinite;
-  record.seconds.evaluate += refused.seconds.evaluate;
-  record.seconds.factor += refused.seconds.factor;
-  record.seconds.solve += refused.seconds.solve;
-  record.seconds.line_search += refused.seconds.line_search;
-  record.seconds.contact += refused.seconds.contact;
-  record.seconds.total += refused.seconds.total;
-  record.refused = refused.refused + 1;
-}
 
 }  // namespace
 
@@ -64,7 +48,7 @@ StepRecord StepControl::step(State& state) {
     const State before = adapts ? state : State{};
     stepper_->options().dt = dt;
     StepRecord record = stepper_->step(state);
-    if (tries > 0) add_cost(refused, record);
+    if (tries > 0) add_refused(refused, record);
     if (record.accepted && record.error > limits_.tolerance && dt > limits_.smallest * (1 + same_time)) {
       state = before;
       next_ = std::max(limits_.smallest, by_error(record.error, dt));

@@ -7,21 +7,10 @@
 
 #include "runtime/error.h"
 #include "runtime/solver/lags.h"
+#include "runtime/solver/step_cost.h"
 #include "runtime/solver/stopwatch.h"
 
 namespace ergon {
-
-namespace {
-
-void add(NewtonSeconds& sum, const NewtonSeconds& part) {
-  sum.evaluate += part.evaluate;
-  sum.factor += part.factor;
-  sum.solve += part.solve;
-  sum.line_search += part.line_search;
-  sum.contact += part.contact;
-}
-
-}  // namespace
 
 TimeStepper::TimeStepper(System& system, Eigen::VectorXd mass, Contact* contact, StepOptions options, Script script)
     : system_(&system), mass_(std::move(mass)), contact_(contact), options_(options), script_(std::move(script)) {
@@ -235,13 +224,7 @@ NewtonResult TimeStepper::solve(const Solve& stage, Eigen::Matrix3Xd& x, StepRec
   while (true) {
     result = newton_.minimise(*system_, x, newton, contact_);
     ++solves;
-    record.newton_iterations += result.iterations;
-    record.follow_iterations += result.follow_iterations;
-    record.factorisations += result.factorisations;
-    record.halvings += result.halvings;
-    record.shifts += result.shifts;
-    record.indefinite += result.indefinite;
-    add(record.seconds, result.seconds);
+    add_solve(result, record);
     take_balance(x);
     if (options_.record_forces && contact_) record.forces = forces(x);
     if (!friction || !result.converged) break;

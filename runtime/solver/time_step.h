@@ -107,6 +107,7 @@ struct StepRecord {
   double residual = 0;        // N
   double step_speed = 0;      // m/s, against the tolerance
   int factorisations = 0;
+  double factor_flops = 0;  // of all factorisations
   int halvings = 0;
   int shifts = 0;
   long indefinite = 0;

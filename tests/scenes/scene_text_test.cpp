@@ -52,6 +52,22 @@ class SceneTextTest : public testing::Test {
   std::string file_;
 };
 
+// What is added stands nowhere in the text: none of it may be lost.
+TEST_F(SceneTextTest, AddsSeveralValuesToOneTable) {
+  SceneText text(file_);
+  for (const char* change : {"time.integrator=bdf2", "time.tolerance=1e-5", "time.min_dt=1e-6", "solver.tolerance=0.01",
+                             "solver.precision=float", "start.seed=7", "start.noise=0.5"})
+    set(text, change);
+  const Scene scene = text.read();
+  EXPECT_EQ(scene.time.integrator, "bdf2");
+  EXPECT_EQ(scene.time.tolerance, 1e-5);
+  EXPECT_EQ(scene.time.min_dt, 1e-6);
+  EXPECT_EQ(scene.solver.tolerance, 0.01);
+  EXPECT_EQ(scene.solver.precision, "float");
+  EXPECT_EQ(scene.start.seed, 7);
+  EXPECT_EQ(scene.start.noise, 0.5);
+}
+
 TEST_F(SceneTextTest, ReplacesAndAddsValuesByPath) {
   SceneText text(file_);
   set(text, "time.dt=0.5 ms");
