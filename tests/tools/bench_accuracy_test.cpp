@@ -110,11 +110,33 @@ TEST_F(BenchAccuracyCommand, BriefRunsTellErrorsAndWork) {
               HasSubstr("reference quad9 [4, 4, 1] tr_bdf2 dt 0.0125 s; quad9 [4, 4, 1] sdirk2 dt 0.025 s differs by"));
 }
 
-TEST_F(BenchAccuracyCommand, NamesTheNearestProblem) {
-  const Answer answer = ergon("bench accuracy --problem buckle");
+// What is looser than the default is further from the strict run; all stand beside the error of dt.
+TEST_F(BenchAccuracyCommand, StoppingTellsWhatToleranceAndDhatAdd) {
+  const std::vector<Json> all = rows("stopping --brief --out found");
+  ASSERT_EQ(all.size(), 9u);
+  for (const Json& row : all) {
+    EXPECT_EQ(row["failure"], "") << row;
+    EXPECT_GT(row["dt_error"], 0) << row;
+    EXPECT_GT(row["work"], 0) << row;
+  }
+  EXPECT_EQ(all[0]["study"], "tolerance");
+  EXPECT_GT(all[0]["error"], 10 * all[2]["error"].get<double>());
+  EXPECT_EQ(all[3]["study"], "friction");
+  EXPECT_EQ(all[4]["default"], true);
+  EXPECT_LE(all[4]["error"], all[3]["error"]);
+  EXPECT_EQ(all[6]["key"], "ground.dhat (m)");
+  EXPECT_GT(all[6]["error"], 2 * all[8]["error"].get<double>());
+  const Answer answer = ergon("bench stopping --study frictoin");
   EXPECT_EQ(answer.code, 2);
   EXPECT_EQ(answer.err,
-            "ergon: error: --problem: 'buckle' is none of cantilever, column, cloth, bounce, buckling; did you mean "
+            "ergon: error: --study: 'frictoin' is none of tolerance, friction, barrier; did you mean 'friction'?\n");
+}
+
+TEST_F(BenchAccuracyCommand, NamesTheNearestProblem) {
+  const Answer answer = ergon("bench accuracy --problem buckeling");
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_EQ(answer.err,
+            "ergon: error: --problem: 'buckeling' is none of cantilever, column, cloth, bounce, buckling; did you mean "
             "'buckling'?\n");
 }
 

@@ -45,7 +45,7 @@ TEST_F(CommandLine, NamesWhatWasMisspelt) {
          "stress, verify");
   expect("chek x", 2, "unknown command 'ergon chek'; did you mean 'check'?");
   expect("bench kernel", 2, "unknown command 'ergon bench kernel'; did you mean 'kernels'?");
-  expect("bench", 2, "'ergon bench' needs a command: kernels, compile, contact, ccd, scene");
+  expect("bench", 2, "'ergon bench' needs a command: kernels, compile, contact, ccd, scene, accuracy, stopping");
   expect("run --thread 2 x.toml", 2, "unknown option '--thread' of 'ergon run'; did you mean '--threads'?");
   expect("check a.energy b.energy", 2, "'ergon check' does not expect 'b.energy'; see 'ergon check --help'");
   expect("run", 2, "scene is required; see 'ergon run --help'");
