@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <numeric>
+#include <set>
 #include <tuple>
 
 #include "runtime/contact/intersections.h"
@@ -216,8 +217,15 @@ void hold_vertices(const SceneObject& object, Body& body) {
 }
 
 void load_vertices(const SceneObject& object, Body& body) {
+  std::set<int> held(body.fixed.begin(), body.fixed.end());
+  for (const BodyScript& script : body.scripts) held.insert(script.vertices.begin(), script.vertices.end());
   for (const SceneLoad& load : object.loads) {
-    body.loads.push_back(load_shares(body.ordered, selected_vertices(load, object, body.ordered)));
+    const std::vector<int> loaded = selected_vertices(load, object, body.ordered);
+    if (std::all_of(loaded.begin(), loaded.end(), [&](int v) { return held.contains(v); }))
+      throw SourceError(load.place, fmt::format("all vertices of object '{}' in this box are fixed or scripted: a load "
+                                                "moves none of them; move the box, or leave the load out",
+                                                object.name));
+    body.loads.push_back(load_shares(body.ordered, loaded));
     if (load.wrote("traction") && body.loads.back().dimension < 2)
       throw SourceError(
           load.at("traction"),
@@ -340,8 +348,8 @@ Body load_body(const SceneObject& object, const std::string& folder) {
   }
   order(body);
   hold_vertices(object, body);
-  load_vertices(object, body);
   body.scripts = scripts_of(object, body.ordered);
+  load_vertices(object, body);
   if (object.affine() && !is_held(object, body)) body.moments = moments;
   body.quadrature = object.quadrature;
   body.section = section_of(object, dimension_of(body.mesh.element));
