@@ -31,7 +31,7 @@ const AccuracyRow* costliest_short_of(const std::vector<AccuracyRow>& rows, doub
 }
 
 StudyRun reference_of(const AccuracyProblem& problem, const AccuracySetting& setting, StudyRunner& runner) {
-  StudyRun run = runner.run(problem.name, setting.changes());
+  StudyRun run = runner.run(problem.name, problem.changes(setting));
   if (!run.failure.empty())
     throw std::runtime_error(
         fmt::format("{}: the reference ({}) fails: {}", problem.name, setting.text(), run.failure));
@@ -54,7 +54,7 @@ AccuracyStudy run_accuracy(const AccuracyProblem& problem, StudyRunner& runner,
   AccuracyStudy study{problem, {}, reference_of(problem, problem.reference, runner), 0};
   study.reference_error = study_error(reference_of(problem, problem.other_reference, runner), study.reference);
   for (const AccuracySetting& setting : problem.settings) {
-    StudyRun run = runner.run(problem.name, setting.changes());
+    StudyRun run = runner.run(problem.name, problem.changes(setting));
     const double error = study_error(run, study.reference);
     study.rows.push_back({setting, std::move(run), error});
     seen(study.rows.back());

@@ -23,10 +23,15 @@ struct AccuracyProblem {
   std::string name;     // of its scene in scenes/studies
   std::string summary;  // a line
   bool smooth = true;   // without contact: the orders of elements and integrators show
+  // "PATH=VALUE", of all runs: what the solver would choose by the setting, so that all solve the same problem.
+  std::vector<std::string> model;
   std::vector<AccuracySetting> settings;
   // What errors are counted against, and a setting of another element and integrator, whose error against it tells how
   // far both can be trusted.
   AccuracySetting reference, other_reference;
+
+  // Of a run: those of the model and of the setting.
+  std::vector<std::string> changes(const AccuracySetting& setting) const;
 };
 
 // brief: few settings and a coarse reference, a second or so in all.
