@@ -28,7 +28,9 @@ class CriticalAlgebra : public JetAlgebra<B> {
   using Scalar = typename Jets::Scalar;
   using Record = std::pair<CriticalSite, Scalar>;
 
-  CriticalAlgebra(const Energy& energy, B& base) : Jets(energy, base, Jets::Order::first, Jets::Variables::all) {}
+  // Where values alone are asked for, derivatives by none are much cheaper.
+  CriticalAlgebra(const Energy& energy, B& base, typename Jets::Variables variables = Jets::Variables::all)
+      : Jets(energy, base, Jets::Order::first, variables) {}
 
   void at(const Expression& e) {
     expression_ = &e;

@@ -26,8 +26,9 @@ struct Traced {
 };
 
 template <class B>
-Traced<B> trace(const Energy& energy, const std::string& case_name, B& numbers) {
-  CriticalAlgebra<B> algebra(energy, numbers);
+Traced<B> trace(const Energy& energy, const std::string& case_name, B& numbers,
+                typename CriticalAlgebra<B>::Variables variables = CriticalAlgebra<B>::Variables::all) {
+  CriticalAlgebra<B> algebra(energy, numbers, variables);
   auto result = elaborate(energy, case_name, algebra);
   return {algebra.records(), std::move(result)};
 }
@@ -167,7 +168,7 @@ std::pair<bool, bool> signs_about(const Energy& energy, const std::string& case_
       for (Rational& x : moved.at(symbol.name))
         if ((symbol.role == Role::dof) == dofs) x = x + sampler.fraction(16, 16) / 1000000;
     DoubleAlgebra numbers(moved);
-    const auto traced = trace(energy, case_name, numbers);
+    const auto traced = trace(energy, case_name, numbers, CriticalAlgebra<DoubleAlgebra>::Variables::none);
     const auto* jet = quantity(traced, {CriticalTarget::Kind::site, site, 0});
     if (jet == nullptr) continue;
     signs.first = signs.first || jet->value > 0;
@@ -180,7 +181,7 @@ std::vector<CriticalSite> vanishing_sites(const Energy& energy, const std::strin
                                           const ExactInputs& inputs) {
   ClnAlgebra numbers(inputs, digits_for_derivatives(energy, critical_digits));
   std::vector<CriticalSite> found;
-  for (const auto& [site, jet] : trace(energy, case_name, numbers).sites)
+  for (const auto& [site, jet] : trace(energy, case_name, numbers, CriticalAlgebra<ClnAlgebra>::Variables::none).sites)
     if (jet.value.defined && size_of(jet.value) < 1e-60) found.push_back(site);
   return found;
 }

@@ -6,7 +6,7 @@
 //   bool is_zero(const Scalar&);                 exactly zero, whatever the inputs
 //   bool less(const Scalar&, const Scalar&);
 //   Decomposed<Scalar> decompose_apart(const std::vector<Scalar>& F);   where energies may call `stretches`
-// Derivatives may be limited to the first ones, and taken by every symbol instead of the dofs alone.
+// Derivatives may be limited to the first ones, and taken by every symbol instead of the dofs alone, or by none.
 // The derivative of abs at 0 is 1; where the arguments of min or max are equal, the first is taken.
 
 #include <array>
@@ -33,7 +33,7 @@ class JetAlgebra {
   using S = typename B::Scalar;
   using Scalar = Jet<S>;
 
-  enum class Variables { dofs, all };
+  enum class Variables { none, dofs, all };
   enum class Order { first, second };
 
   // The components of the energy's dofs (or of all its symbols), in order of declaration, are the variables.
@@ -207,7 +207,9 @@ class JetAlgebra {
     }
   }
 
-  bool varies(const Symbol& symbol) const { return of_ == Variables::all || symbol.role == Role::dof; }
+  bool varies(const Symbol& symbol) const {
+    return of_ == Variables::all || (of_ == Variables::dofs && symbol.role == Role::dof);
+  }
 
   size_t packed() const { return static_cast<size_t>(n_) * (static_cast<size_t>(n_) + 1) / 2; }
 
