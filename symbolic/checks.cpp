@@ -20,7 +20,7 @@ std::vector<Finding> check_case(const Energy& energy, const std::string& name) {
   if (findings.back().severity == Severity::ok)
     for (const auto& check : {check_smooth, check_boundaries})
       for (Finding& finding : check(energy, name)) findings.push_back(std::move(finding));
-  for (const auto& check : {check_rigid_motion, check_rest, check_moduli, check_stable_at_rest, check_range,
+  for (const auto& check : {check_rigid_motion, check_load, check_rest, check_moduli, check_stable_at_rest, check_range,
                             check_collapse, check_inversion})
     add(check(energy, name));
   return findings;

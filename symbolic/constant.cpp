@@ -62,4 +62,11 @@ std::optional<Exponent> constant_exponent(const Expression& expression) {
   }
 }
 
+std::optional<std::string> literal_number(const Expression& expression) {
+  using Kind = Expression::Kind;
+  if (expression.kind == Kind::number) return expression.text;
+  const bool negative = expression.kind == Kind::negate && expression.arguments[0]->kind == Kind::number;
+  return negative ? std::optional("-" + expression.arguments[0]->text) : std::nullopt;
+}
+
 }  // namespace ergon

@@ -10,6 +10,7 @@
 
 #include "symbolic/constant.h"
 #include "symbolic/elaborate.h"
+#include "symbolic/spline.h"
 #include "symbolic/tensor_operations.h"
 
 namespace ergon {
@@ -155,6 +156,7 @@ class Elaborator {
     if (f == "pow") return op_.scalar(power(e));
     if (f == "identity") return op_.identity(whole(*text[0]));
     if (f == "column") return op_.column(tensor(*text[0]), whole(*text[1]));
+    if (f == "spline") return op_.scalar(spline(e));
     std::vector<T> t;
     for (const ExpressionPtr& argument : text) t.push_back(tensor(*argument));
     at(e);
@@ -178,6 +180,15 @@ class Elaborator {
     if (f == "stretches") return stretches(t[0]);
     if (f == "dihedral") return op_.scalar(op_.dihedral(t[0], t[1], t[2], t[3]));
     throw SourceError(e.place, "unknown function '" + f + "'");
+  }
+
+  S spline(const Expression& e) {
+    const S x = scalar(*e.arguments[0]);
+    const T values = tensor(*e.arguments[2]);
+    std::vector<S> knots;
+    for (const ExpressionPtr& knot : e.arguments[1]->arguments) knots.push_back(scalar(*knot));
+    at(e);
+    return NaturalSpline<A>(a_, knots, values.at).at(x);
   }
 
   T stretches(const T& F) {

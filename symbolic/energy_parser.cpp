@@ -144,6 +144,7 @@ class EnergyParser {
     if (word == "dof") return declare(statement, end, Role::dof);
     if (word == "frame") return frame(statement);
     if (word == "part") return part(statement, end);
+    if (word == "load") return load(statement);
 
     if (word == "let" || word == "case" || word == "active" || word == "require" || word == "value" ||
         word == "update") {
@@ -177,6 +178,21 @@ class EnergyParser {
       throw SourceError(statement.place(end), "expected what the energy is a part of, found the end of the statement");
     if (!energy_.part_of.empty()) throw SourceError(statement.place(), "a second `part`; an energy states it once");
     energy_.part_of = statement.text.substr(start);
+  }
+
+  void load(const Statement& statement) {
+    const Words words = split(statement);
+    if (words.text.size() != 2)
+      throw SourceError(words.places[std::min<size_t>(2, words.text.size())],
+                        fmt::format("expected `load PARAM`, the param that the energy is in proportion to, found '{}'",
+                                    statement.text));
+    if (!energy_.load.empty()) throw SourceError(statement.place(), "a second `load`; an energy states it once");
+    std::vector<std::string> params;
+    for (const Symbol* param : energy_.with_role(Role::param)) params.push_back(param->name);
+    if (std::find(params.begin(), params.end(), words.text[1]) == params.end())
+      throw SourceError(words.places[1], fmt::format("`load` names a param that is declared above, and '{}' is none{}",
+                                                     words.text[1], did_you_mean(words.text[1], params)));
+    energy_.load = words.text[1];
   }
 
   void declare(const Statement& statement, size_t end, Role role) {

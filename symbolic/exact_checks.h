@@ -20,6 +20,9 @@ std::vector<Finding> check_boundaries(const Energy& energy, const std::string& c
 // The value keeps under rotation and translation, or the energy states `frame fixed` and it does not.
 std::optional<Finding> check_rigid_motion(const Energy& energy, const std::string& case_name);
 
+// Of an energy that states `load PARAM`: the value is in proportion to the param.
+std::optional<Finding> check_load(const Energy& energy, const std::string& case_name);
+
 // No stress in the undeformed state: F the identity, or dofs at the rest positions of their names (x0 at X0).
 std::optional<Finding> check_rest(const Energy& energy, const std::string& case_name);
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
+#include <limits>
 
 #include "symbolic/constant.h"
 #include "symbolic/functions.h"
@@ -62,6 +63,7 @@ class Call {
       for (size_t i = 1; i < 4; ++i) same_unit(0, i);
       return {};
     }
+    if (f == "spline") return spline();
     const std::string elsewhere = function_elsewhere(f);
     throw SourceError(call_.place, fmt::format("unknown function '{}'", f) +
                                        (elsewhere.empty() ? did_you_mean(f, function_names()) : elsewhere));
@@ -166,6 +168,33 @@ class Call {
     }
     all.shape.cols = static_cast<int>(q_.size());
     return all;
+  }
+
+  // A table of literal knots, and of values that may be anything.
+  Quantity spline() const {
+    count(3);
+    if (!q_[0].shape.scalar()) refuse(0, "a scalar");
+    if (!q_[0].any_unit && !q_[0].unit.dimensionless())
+      throw SourceError(place(0), fmt::format("'spline' expects a pure number (1), found {}; divide it by a value of "
+                                              "its own unit",
+                                              to_string(q_[0].unit)));
+    const Expression& knots = *call_.arguments[1];
+    if (knots.kind != Expression::Kind::literal || knots.shape.cols != 1)
+      throw SourceError(place(1), "'spline' expects its knots as literal numbers, as in spline(x, [0, 1, 2], values)");
+    double last = -std::numeric_limits<double>::infinity();
+    for (const ExpressionPtr& knot : knots.arguments) {
+      const std::optional<std::string> text = literal_number(*knot);
+      if (!text) throw SourceError(start_of(*knot), "a knot of a spline is a literal number");
+      const double value = std::strtod(text->c_str(), nullptr);
+      if (value <= last)
+        throw SourceError(start_of(*knot), fmt::format("the knots of a spline ascend, found {} after {}", value, last));
+      last = value;
+    }
+    if (q_[2].shape.cols != 1 || q_[2].shape.scalar()) refuse(2, "a vector of values, one for each knot");
+    if (q_[2].shape.rows != knots.shape.rows)
+      throw SourceError(place(2),
+                        fmt::format("'spline' has {} knots, and {} values", knots.shape.rows, q_[2].shape.rows));
+    return {{}, q_[2].unit, q_[2].any_unit};
   }
 
   const Expression& call_;

@@ -42,9 +42,9 @@ int argument_count(Function function) { return entry(function).arguments; }
 
 const std::vector<std::string>& function_names() {
   static const std::vector<std::string> names = [] {
-    std::vector<std::string> all = {"tr",    "det",    "inverse",  "transpose", "cross",    "dot",
-                                    "outer", "norm",   "norm2",    "columns",   "identity", "sym",
-                                    "dev",   "column", "dihedral", "pow",       "stretches"};
+    std::vector<std::string> all = {"tr",    "det",    "inverse",  "transpose", "cross",     "dot",
+                                    "outer", "norm",   "norm2",    "columns",   "identity",  "sym",
+                                    "dev",   "column", "dihedral", "pow",       "stretches", "spline"};
     for (const Entry& e : scalar_functions) all.emplace_back(e.name);
     return all;
   }();

@@ -1,4 +1,4 @@
-// Checks at random states: defined, rigid motion, inversion.
+// Checks at random states: defined, rigid motion, load, inversion.
 
 #include <fmt/format.h>
 
@@ -152,6 +152,29 @@ std::optional<Finding> check_rigid_motion(const Energy& energy, const std::strin
           motion, to_double(elaborate(energy, case_name, first).value),
           to_double(elaborate(energy, case_name, second).value), derivative_unit(energy, 0), to_text(part)),
       start_of(part), fmt::format("{} and {}", state_text(energy, before), state_text(energy, dofs))};
+}
+
+std::optional<Finding> check_load(const Energy& energy, const std::string& case_name) {
+  if (energy.load.empty()) return std::nullopt;
+  StateSampler sampler;
+  for (int i = 0; i < 3; ++i) {
+    const auto state = sampler.admissible(energy, case_name);
+    if (!state) return no_state("load");
+    ExactInputs half = *state;
+    for (Rational& component : half.at(energy.load)) component = component / 2;
+    ClnAlgebra of_whole(*state, digits), of_half(half, digits);
+    const ClnNumber whole = elaborate(energy, case_name, of_whole).value;
+    const ClnNumber part = elaborate(energy, case_name, of_half).value;
+    const double off = cln::double_approx(cln::abs(whole.value - 2 * part.value) / (1 + cln::abs(whole.value)));
+    if (part.defined && whole.defined && off <= tolerance) continue;
+    return Finding{
+        Severity::error, "load",
+        fmt::format("the value is not in proportion to '{}': {:.4g} J where it is {:.4g} J for half of it; a "
+                    "load grows by this param alone",
+                    energy.load, to_double(whole), to_double(part)),
+        start_of(*energy.value), state_text(energy, *state)};
+  }
+  return Finding{Severity::ok, "load", fmt::format("the value is in proportion to {}", energy.load), {}, ""};
 }
 
 std::optional<Finding> check_inversion(const Energy& energy, const std::string& case_name) {
