@@ -2,7 +2,9 @@
 // Meshes from files, and solids from surfaces. Every result is finite, names only its own vertices, and is the same for
 // the same input. Gmsh fills surfaces; it keeps global state, so that calls of fill_surface wait for one another.
 
+#include <map>
 #include <string>
+#include <vector>
 
 #include "runtime/mesh/mesh.h"
 
@@ -14,6 +16,10 @@ namespace ergon {
 // line (text): missing file, another format, no cells, more than one kind of cell, cells of another kind, a node that
 // does not exist or exists twice, a coordinate that is not finite, a file that is cut off.
 Mesh read_mesh(const std::string& path);
+
+// The physical groups of such a file that hold some of the cells of read_mesh(path), which are counted in its order
+// from 0; by name, or by number where a group has none. Throws as above.
+std::map<std::string, std::vector<int>> read_mesh_groups(const std::string& path);
 
 // Reads a triangle surface from .obj, .stl (text or binary) or .ply (text or binary). Vertices with equal coordinates
 // are merged, triangles that lose a side by that and vertices of no triangle are left out, quadrilaterals are cut in

@@ -2,16 +2,17 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
+#include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
+#include <cstdlib>
 #include <map>
 #include <optional>
 #include <unordered_map>
 
 #include "runtime/error.h"
 #include "runtime/mesh/mesh_import.h"
+#include "runtime/mesh/msh_words.h"
 #include "runtime/mesh/surface_readers.h"
 
 namespace ergon {
@@ -55,9 +56,9 @@ const MshCell kMshCells[] = {
     {29, "Tetrahedron 20", 20, 3},
     {30, "Tetrahedron 35", 35, 3}};
 
-class MshReader {
+class MshReader : MshWords {
  public:
-  MshReader(std::string_view data, std::string path) : rest_(data), path_(std::move(path)) {}
+  using MshWords::MshWords;
 
   Mesh read() {
     read_format();
@@ -68,6 +69,12 @@ class MshReader {
       } else if (*word == "$Elements") {
         version_ < 4 ? read_cells_2() : read_cells_4();
         expect("$EndElements");
+      } else if (*word == "$PhysicalNames") {
+        read_group_names();
+        expect("$EndPhysicalNames");
+      } else if (*word == "$Entities" && version_ == 4) {
+        read_entities();
+        expect("$EndEntities");
       } else if (*word == "$ParametricNodes") {
         fail("parametric nodes are read in format 4.1 only; save the mesh in that format");
       } else if ((*word)[0] == '$') {
@@ -79,72 +86,20 @@ class MshReader {
     return mesh();
   }
 
+  std::map<std::string, std::vector<int>> groups() const {
+    const MshCell& cell = kept();
+    std::map<std::string, std::vector<int>> out;
+    const std::vector<std::vector<int>>& groups = groups_.at(cell.type);
+    for (size_t i = 0; i < groups.size(); ++i)
+      for (const int group : groups[i]) {
+        const auto name = names_.find({cell.dimension, group});
+        out[name == names_.end() ? std::to_string(group) : name->second].push_back(static_cast<int>(i));
+      }
+    return out;
+  }
+
  private:
-  [[noreturn]] void fail(const std::string& message) const {
-    // Lines do not count in binary data.
-    throw InputError(binary_ ? fmt::format("{}: {}", path_, message) : fmt::format("{}:{}: {}", path_, line_, message));
-  }
-
-  std::optional<std::string_view> next_word() {
-    size_t start = 0;
-    for (; start < rest_.size() && std::strchr(" \t\r\n", rest_[start]); ++start) line_ += rest_[start] == '\n';
-    if (start == rest_.size()) return std::nullopt;
-    const size_t end = std::min(rest_.find_first_of(" \t\r\n", start), rest_.size());
-    const std::string_view word = rest_.substr(start, end - start);
-    rest_.remove_prefix(end);
-    return word;
-  }
-
-  std::string_view word(const char* what) {
-    const auto next = next_word();
-    if (!next) fail(fmt::format("the file ends before {}", what));
-    return *next;
-  }
-
-  void expect(std::string_view wanted) {
-    const std::string_view found = word(std::string(wanted).c_str());
-    if (found != wanted) fail(fmt::format("expected '{}', found '{}'", wanted, found));
-  }
-
-  template <class Number>
-  Number binary_number(const char* what) {
-    Number value;
-    if (rest_.size() < sizeof value) fail(fmt::format("the file ends before {}", what));
-    std::memcpy(&value, rest_.data(), sizeof value);
-    rest_.remove_prefix(sizeof value);
-    return value;
-  }
-
-  // A whole number that is binary data of the type Stored, or a word.
-  template <class Stored>
-  long long whole(const char* what, bool as_text = false) {
-    if (binary_ && !as_text) return static_cast<long long>(binary_number<Stored>(what));
-    const std::string_view text = word(what);
-    long long value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) {
-      fail(fmt::format("{} is '{}', which is not a whole number", what, text));
-    }
-    return value;
-  }
-
-  template <class Stored>
-  long long count(const char* what, bool as_text = false) {
-    const long long value = whole<Stored>(what, as_text);
-    if (value < 0) fail(fmt::format("{} is {}; it must not be negative", what, value));
-    return value;
-  }
-
-  double number(const char* what) {
-    if (binary_) return binary_number<double>(what);
-    const std::string_view text = word(what);
-    double value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) {
-      fail(fmt::format("{} is '{}', which is not a number", what, text));
-    }
-    return value;
-  }
+  using Entity = std::pair<int, int>;  // dimension and number
 
   void read_format() {
     const auto first = next_word();
@@ -170,19 +125,36 @@ class MshReader {
     end_line();
   }
 
-  // Binary data starts right behind the end of a line.
-  void end_line() {
-    if (!binary_) return;
-    const size_t end = rest_.find('\n');
-    rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+  // Text in binary files too.
+  void read_group_names() {
+    const long long names = count<int>("the number of physical names", true);
+    for (long long i = 0; i < names; ++i) {
+      const int dimension = static_cast<int>(whole<int>("the dimension of a physical group", true));
+      const int number = static_cast<int>(whole<int>("the number of a physical group", true));
+      const size_t open = rest_.find('"'), close = rest_.find('"', open + 1), line = rest_.find('\n');
+      if (close == std::string_view::npos || close > line)
+        fail(fmt::format("the name of the physical group {} does not stand in quotes", number));
+      names_[{dimension, number}] = std::string(rest_.substr(open + 1, close - open - 1));
+      rest_.remove_prefix(close + 1);
+    }
   }
 
-  void skip_section(std::string_view name) {
-    const std::string end = "$End" + std::string(name.substr(1));
-    const size_t at = rest_.find(end);
-    if (at == std::string_view::npos) fail(fmt::format("the section {} has no {}", name, end));
-    line_ += static_cast<int>(std::count(rest_.begin(), rest_.begin() + static_cast<long>(at), '\n'));
-    rest_.remove_prefix(at + end.size());
+  // Which physical groups the points, curves, surfaces and volumes of the model belong to.
+  void read_entities() {
+    end_line();
+    std::array<long long, 4> counts{};
+    for (long long& entities : counts) entities = count<std::uint64_t>("the number of entities");
+    for (int dimension = 0; dimension < 4; ++dimension) {
+      for (long long i = 0; i < counts[static_cast<size_t>(dimension)]; ++i) {
+        const int entity = static_cast<int>(whole<std::int32_t>("an entity's number"));
+        for (int k = 0; k < (dimension == 0 ? 3 : 6); ++k) number("a bound of an entity");
+        const long long groups = count<std::uint64_t>("the number of an entity's physical groups");
+        for (long long k = 0; k < groups; ++k)
+          entity_groups_[{dimension, entity}].push_back(std::abs(static_cast<int>(whole<std::int32_t>("a group"))));
+        const long long bounds = dimension == 0 ? 0 : count<std::uint64_t>("the number of an entity's bounds");
+        for (long long k = 0; k < bounds; ++k) whole<std::int32_t>("a bounding entity");
+      }
+    }
   }
 
   Eigen::Vector3d point(long long tag) {
@@ -251,7 +223,12 @@ class MshReader {
       if (in_block == 0) fail("a block of elements is empty");
       for (long long i = 0; i < in_block; ++i) {
         if (binary_) tag = whole<std::int32_t>("an element's number");
-        for (long long k = 0; k < tags; ++k) whole<std::int32_t>("an element's tag");
+        std::vector<int> group;  // the first tag, 0 for none
+        for (long long k = 0; k < tags; ++k) {
+          const int value = static_cast<int>(whole<std::int32_t>("an element's tag"));
+          if (k == 0 && value != 0) group.push_back(value);
+        }
+        groups_[cell.type].push_back(std::move(group));
         add_cell<std::int32_t>(cell, tag);
       }
       done += in_block;
@@ -263,17 +240,20 @@ class MshReader {
     const long long blocks = count<std::uint64_t>("the number of blocks of elements");
     for (int i = 0; i < 3; ++i) whole<std::uint64_t>("the number or range of elements");
     for (long long b = 0; b < blocks; ++b) {
-      whole<std::int32_t>("a block's dimension");
-      whole<std::int32_t>("a block's entity");
+      const int dimension = static_cast<int>(whole<std::int32_t>("a block's dimension"));
+      const int entity = static_cast<int>(whole<std::int32_t>("a block's entity"));
       const MshCell& cell = kind(whole<std::int32_t>("an element's type"));
       const long long elements = count<std::uint64_t>("the number of elements of a block");
-      for (long long i = 0; i < elements; ++i)
+      const auto groups = entity_groups_.find({dimension, entity});
+      for (long long i = 0; i < elements; ++i) {
+        groups_[cell.type].push_back(groups == entity_groups_.end() ? std::vector<int>{} : groups->second);
         add_cell<std::uint64_t>(cell, whole<std::uint64_t>("an element's number"));
+      }
     }
   }
 
-  // The cells of the highest dimension, with their vertices numbered anew.
-  Mesh mesh() const {
+  // The one kind of cells of the highest dimension.
+  const MshCell& kept() const {
     int dimension = 1;
     for (const auto& [type, cells] : cells_) {
       if (!cells.empty()) dimension = std::max(dimension, kind(type).dimension);
@@ -296,19 +276,25 @@ class MshReader {
                       "Hex20, Hex27, Prism6, Tri3, Tri6, Quad4, Quad9, Edge2 and Edge3",
                       path_, names[0]));
     }
-    const std::vector<long long>& tags = cells_.at(kinds[0]->type);
+    return *kinds[0];
+  }
+
+  // Of the kept cells, with their vertices numbered anew.
+  Mesh mesh() const {
+    const MshCell& kind = kept();
+    const std::vector<long long>& tags = cells_.at(kind.type);
     std::vector<long long> used = tags;
     std::sort(used.begin(), used.end());
     used.erase(std::unique(used.begin(), used.end()), used.end());
     Mesh mesh;
-    mesh.element = *kinds[0]->element;
+    mesh.element = *kind.element;
     mesh.source = path_;
     mesh.X.resize(3, static_cast<Eigen::Index>(used.size()));
     for (size_t i = 0; i < used.size(); ++i) mesh.X.col(static_cast<Eigen::Index>(i)) = nodes_.at(used[i]);
     for (const long long tag : tags) {
       mesh.cells.push_back(static_cast<int>(std::lower_bound(used.begin(), used.end(), tag) - used.begin()));
     }
-    const std::vector<size_t>& order = kinds[0]->order;
+    const std::vector<size_t>& order = kind.order;
     std::vector<int> cell(order.size());
     for (size_t first = 0; first < mesh.cells.size() && !order.empty(); first += order.size()) {
       for (size_t i = 0; i < order.size(); ++i) cell[i] = mesh.cells[first + order[i]];
@@ -317,23 +303,36 @@ class MshReader {
     return mesh;
   }
 
-  std::string_view rest_;
-  std::string path_;
-  int line_ = 1;
-  int version_ = 0;  // 2 or 4
-  bool binary_ = false;
+  int version_ = 0;                                       // 2 or 4
   std::unordered_map<long long, Eigen::Vector3d> nodes_;  // by tag
   std::map<int, std::vector<long long>> cells_;           // node tags by type
+  std::map<int, std::vector<std::vector<int>>> groups_;   // of each cell, by type
+  std::map<Entity, std::vector<int>> entity_groups_;
+  std::map<Entity, std::string> names_;
 };
 
-}  // namespace
-
-Mesh read_mesh(const std::string& path) {
+// The file, which the reader does not copy, and its reader.
+template <class F>
+auto read_msh(const std::string& path, F result) {
   if (!path.ends_with(".msh")) {
     throw InputError(path + ": unknown mesh format; a mesh is read from a .msh file of Gmsh");
   }
   const std::string data = whole_file(path);
-  return MshReader(data, path).read();
+  MshReader reader(data, path);
+  return result(reader);
+}
+
+}  // namespace
+
+Mesh read_mesh(const std::string& path) {
+  return read_msh(path, [](MshReader& reader) { return reader.read(); });
+}
+
+std::map<std::string, std::vector<int>> read_mesh_groups(const std::string& path) {
+  return read_msh(path, [](MshReader& reader) {
+    reader.read();
+    return reader.groups();
+  });
 }
 
 }  // namespace ergon

@@ -186,6 +186,55 @@ TEST(mesh_msh, every_format_of_gmsh_gives_the_same_mesh) {
   }
 }
 
+// Two boxes that share a face: a cell is in a group if its volume is; groups of surfaces are not of cells.
+TEST(mesh_msh, physical_groups_of_every_format_hold_their_cells) {
+  const TemporaryFolder folder;
+  for (const double version : {2.2, 4.1}) {
+    for (const bool binary : {false, true}) {
+      const std::string path = folder.path("boxes.msh");
+      gmsh::initialize(0, nullptr, false);
+      gmsh::option::setNumber("General.Terminal", 0);
+      gmsh::option::setNumber("Mesh.MshFileVersion", version);
+      gmsh::option::setNumber("Mesh.Binary", binary);
+      gmsh::option::setNumber("Mesh.MeshSizeMax", 0.4);
+      gmsh::model::occ::addBox(0, 0, 0, 1, 1, 1);
+      gmsh::model::occ::addBox(1, 0, 0, 2, 1, 1);
+      std::vector<std::pair<int, int>> made;
+      std::vector<std::vector<std::pair<int, int>>> from;
+      gmsh::model::occ::fragment({{3, 1}}, {{3, 2}}, made, from);
+      gmsh::model::occ::synchronize();
+      gmsh::model::addPhysicalGroup(3, {from[0][0].second}, 7);
+      gmsh::model::setPhysicalName(3, 7, "the core");
+      gmsh::model::addPhysicalGroup(3, {from[1][0].second}, 9);
+      gmsh::model::addPhysicalGroup(2, {1}, 7);
+      gmsh::model::setPhysicalName(2, 7, "a face");
+      gmsh::model::mesh::generate(3);
+      gmsh::write(path);
+      gmsh::finalize();
+
+      const Mesh mesh = read_mesh(path);
+      const auto volumes = rest_volumes(mesh);
+      const auto groups = read_mesh_groups(path);
+      ASSERT_EQ(groups.size(), 2u) << version << binary;
+      const auto volume = [&](const std::string& name) {
+        double sum = 0;
+        for (const int cell : groups.at(name)) sum += volumes[static_cast<size_t>(cell)];
+        return sum;
+      };
+      EXPECT_NEAR(volume("the core"), 1, 1e-12) << version << binary;
+      EXPECT_NEAR(volume("9"), 2, 1e-12) << version << binary;
+    }
+  }
+  const std::string named = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n3 7 core\n$EndPhysicalNames\n";
+  try {
+    read_mesh(folder.file("unquoted.msh", named));
+    ADD_FAILURE();
+  } catch (const InputError& bad) {
+    EXPECT_THAT(bad.what(),
+                testing::EndsWith("unquoted.msh:6: the name of the physical group 7 does not stand in quotes"));
+  }
+}
+
 TEST(mesh_msh, parametric_nodes_of_format_2_are_refused) {
   const TemporaryFolder folder;
   const std::string path = saved_by_gmsh(folder, "ball.msh", 2.2, false, 1, true);
