@@ -176,13 +176,17 @@ Evaluation System::value(const Eigen::Matrix3Xd& x) {
       term.operations->value(term.stencils, range, d.points_of(term), &term.results[chunk]);
     }
   }
-  return d.sum(true);
+  Evaluation evaluation = d.sum(true);
+  evaluation.value += damping(x, nullptr);
+  return evaluation;
 }
 
 Evaluation System::gradient(const Eigen::Matrix3Xd& x, Eigen::Matrix3Xd& gradient) {
   impl->sum_gradients(x, gradient, [](size_t) { return true; });
+  Evaluation evaluation = impl->sum(false);
+  evaluation.value += damping(x, &gradient);
   guide(gradient);
-  return impl->sum(false);
+  return evaluation;
 }
 
 void System::gradient_of(const std::vector<int>& potentials, const Eigen::Matrix3Xd& x, Eigen::Matrix3Xd& gradient) {
@@ -249,9 +253,11 @@ Evaluation System::hessian(const Eigen::Matrix3Xd& x, Projection projection, Eig
     }
   }
   d.numbers.carriers.collect(gradient);
+  Evaluation evaluation = d.sum(false, true);
+  evaluation.value += damping(x, &gradient);
+  d.damp_matrix(matrix);
   guide(gradient);
   d.guide_matrix(matrix);
-  Evaluation evaluation = d.sum(false, true);
   for (const SystemTerm& term : d.terms) {
     if (term.constant()) evaluation.indefinite += term.indefinite;
   }

@@ -67,6 +67,21 @@ class System {
   // brings a coupling that is not in it.
   Evaluation hessian(const Eigen::Matrix3Xd& x, Projection projection, Eigen::Matrix3Xd& gradient, BlockMatrix& matrix);
 
+  // Damping in proportion to stiffness: with K the Hessian of a potential, every element projected, at the positions of
+  // the last lag_stiffness(), and `from` and dt those of the last lag_motion(), value(), gradient() and hessian() have
+  // time/(2*dt)*(x - from)' K (x - from) in addition. It is in no entry of by_potential, nor in gradient_of().
+  // To be called after set_carriers(). Throws InputError for a time (s) that is not positive, and for a potential
+  // without a Hessian.
+  void damp(int potential, double time);
+  bool damps() const;
+  // Assembles K at x with all lags and params as they are.
+  void lag_stiffness(const Eigen::Matrix3Xd& x);
+  void lag_motion(const Eigen::Matrix3Xd& from, double dt);  // m, s
+  // Adds the sum of time*K*v (N), which damping resists the velocity v (m/s) of vertices with: columns of carried ones
+  // are not read, and get nothing; those of fixed ones are.
+  void add_damping(const Eigen::Matrix3Xd& v, Eigen::Matrix3Xd& gradient) const;
+  Eigen::Matrix3Xd lagged_velocity(const Eigen::Matrix3Xd& x) const;  // (x - from)/dt, m/s
+
   // N/m, mean over the axes: what resists the motion of this vertex alone, the others or, where it is carried, the
   // other bodies being held. 0 for a fixed one. `matrix`: of the last hessian().
   double stiffness_at(int vertex, const BlockMatrix& matrix) const;
@@ -76,6 +91,10 @@ class System {
 
   struct Impl;
   std::shared_ptr<Impl> impl;
+
+ private:
+  // What damping adds to the energy (J), and to the gradient unless it is null.
+  double damping(const Eigen::Matrix3Xd& x, Eigen::Matrix3Xd* gradient) const;
 };
 
 }  // namespace ergon

@@ -158,6 +158,27 @@ struct SystemTerm {
   static void carry_pairs(SystemRoom& room, int count, const SystemNumbers& numbers, SystemChunk& part);
 };
 
+// A potential that resists motion in proportion to its stiffness.
+struct StiffnessDamping {
+  // A 3x3 block of free vertices in the values of the two matrices.
+  struct Block {
+    ptrdiff_t from = 0;
+    int from_stride = 0;
+    ptrdiff_t to = 0;
+    int to_stride = 0;
+  };
+
+  double time;  // s
+  // The potential by itself, over all vertices that are not carried: its matrix has the columns of fixed ones too.
+  System alone;
+  std::vector<int> vertex_of;  // per block row of it
+  BlockMatrix stiffness = {};  // N/m; without rows until it has been lagged
+  std::vector<Block> places = {};
+  unsigned long placed_pattern = 0, placed_stiffness = 0;  // that the blocks were found in
+
+  void find(const System::Impl& whole);
+};
+
 struct System::Impl {
   int vertices = 0;
   std::vector<char> fixed;
@@ -189,6 +210,10 @@ struct System::Impl {
   std::vector<char> used;           // per block: in the base or in some chunk
   std::vector<int> cleared_column;  // block columns and numbers of the cleared blocks
   std::vector<int> cleared_index;
+
+  std::vector<StiffnessDamping> damping;
+  Eigen::Matrix3Xd damped_from;  // m
+  double damped_dt = 0;          // s; 0: no motion has been lagged
 
   AlignedVector<double> x;  // 4 per vertex
   std::vector<RestConfiguration> configurations;
@@ -225,6 +250,7 @@ struct System::Impl {
   // Called by all threads of a team: writes the base and clears what no chunk stores.
   void start_matrix(BlockMatrix& matrix) const;
   void guide_matrix(BlockMatrix& matrix) const;
+  void damp_matrix(BlockMatrix& matrix);
   bool worth_threads() const;
   void add_term(Potential potential, bool gives_gradient, bool gives_hessian);
   Evaluation sum(bool margins, bool hessians = false) const;

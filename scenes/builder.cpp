@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numeric>
 #include <set>
 
 #include "runtime/error.h"
@@ -32,6 +33,7 @@ struct WorldLaws {
   const Energy* gravity = nullptr;
   const Energy* orthogonality = nullptr;
   const Energy* load = nullptr;
+  const Energy* drag = nullptr;
   ContactLaws contact;
 };
 
@@ -50,6 +52,13 @@ WorldLaws world_laws(const Scene& scene, Laws& laws, std::vector<std::string>& s
     out.orthogonality = &laws.get("affine_orthogonality", whole);
   if (std::any_of(scene.objects.begin(), scene.objects.end(), [](const SceneObject& o) { return !o.loads.empty(); }))
     out.load = &laws.get("dead_load", whole);
+  if (std::any_of(scene.objects.begin(), scene.objects.end(),
+                  [](const SceneObject& o) { return o.mass_damping > 0; })) {
+    if (scene.time.quasi_static())
+      skipped.push_back("mass damping: a quasi-static scene has none");
+    else
+      out.drag = &laws.get("drag", whole);
+  }
   out.contact = contact_laws(scene, laws, skipped);
   return out;
 }
@@ -104,6 +113,21 @@ void add_loads(const Scene& scene, const Kernel& kernel, BuiltScene& out) {
     }
 }
 
+// Of objects that have it, and of the control points of affine ones.
+void add_mass_damping(const Scene& scene, const Kernel& kernel, BuiltScene& out) {
+  for (size_t i = 0; i < scene.objects.size(); ++i) {
+    if (scene.objects[i].mass_damping == 0) continue;
+    const Body& body = out.bodies[i];
+    const int first = body.affine() ? body.first_control : body.first_vertex;
+    std::vector<int> points(body.affine() ? 4 : static_cast<size_t>(body.ordered.vertices()));
+    std::iota(points.begin(), points.end(), first);
+    std::erase_if(points, [&](int v) { return out.mass[v] == 0; });
+    out.system->add(Potential::on_stencils("drag", kernel, points, out.start.x,
+                                           {{"rate", {scene.objects[i].mass_damping}}},
+                                           {{"mass", masses_of(out.mass, points)}}));
+  }
+}
+
 void add_world(const Scene& scene, const WorldLaws& world, const UsedKernels& kernels, BuiltScene& out) {
   const Eigen::Matrix3Xd& X = out.start.x;
   const std::vector<int> points = heavy_points(out.mass);
@@ -118,6 +142,7 @@ void add_world(const Scene& scene, const WorldLaws& world, const UsedKernels& ke
     add_load(scene, index, "g", {scene.gravity.begin(), scene.gravity.end()}, out);
   }
   if (world.load != nullptr) add_loads(scene, kernels.get(*world.load), out);
+  if (world.drag != nullptr) add_mass_damping(scene, kernels.get(*world.drag), out);
   add_contact(scene, world.contact, kernels, out);
 }
 
@@ -284,6 +309,7 @@ BuiltScene build_scene(const Scene& scene, const Catalogue& catalogue, const Ker
     kernels.want(world.gravity);
     kernels.want(world.orthogonality);
     kernels.want(world.load);
+    kernels.want(world.drag);
     want_kernels(world.contact, kernels);
     kernels.load(kernel_source);
   }

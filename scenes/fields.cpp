@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "runtime/mesh/mesh_import.h"
 #include "scenes/laws.h"
 #include "scenes/number_table.h"
 
@@ -81,6 +82,35 @@ struct PlacedFormula {
   }
 };
 
+// Whether each cell, as the object's mesh file numbers them, is in a region that is a physical group of it.
+std::vector<char> cells_of_group(const SceneRegion& region, const FieldPlace& where) {
+  if (!where.object->mesh.ends_with(".msh"))
+    throw SourceError(region.at("group"), fmt::format("only a mesh from a .msh file has physical groups; let a box say "
+                                                      "which cells of object '{}' are in the region '{}'",
+                                                      where.object->name, region.name));
+  const std::string path = (std::filesystem::path(where.folder) / where.object->mesh).lexically_normal().string();
+  const auto groups = read_mesh_groups(path);
+  std::vector<std::string> names;
+  for (const auto& [name, cells] : groups) names.push_back(name);
+  const auto found = groups.find(region.group);
+  if (found == groups.end())
+    throw SourceError(region.at("group"),
+                      names.empty()
+                          ? fmt::format("{} has no physical groups of cells", path)
+                          : fmt::format("{} has no physical group '{}' of cells (its groups: {}){}", path, region.group,
+                                        fmt::join(names, ", "), did_you_mean(region.group, names)));
+  std::vector<char> out(where.body->cell_from.size(), 0);
+  for (const int cell : found->second) out[static_cast<size_t>(cell)] = 1;
+  return out;
+}
+
+bool holds(const SceneRegion& region, const Eigen::Vector3d& point) {
+  for (int i = 0; i < 3; ++i)
+    if (!(region.min[static_cast<size_t>(i)] <= point[i] && point[i] <= region.max[static_cast<size_t>(i)]))
+      return false;
+  return true;
+}
+
 // Per cell of the ordered mesh.
 std::vector<double> region_values(const Energy& energy, const LawField& field, const FieldPlace& where) {
   const Mesh& mesh = where.body->ordered;
@@ -88,6 +118,9 @@ std::vector<double> region_values(const Energy& energy, const LawField& field, c
   const int n = nodes_of(mesh.element);
   std::map<std::string, std::vector<double>> values;
   for (const auto& [name, written] : field.value->regions) values[name] = checked_values(energy, *field.param, written);
+  std::map<std::string, std::vector<char>> groups;
+  for (const SceneRegion& region : where.object->regions)
+    if (values.contains(region.name) && region.wrote("group")) groups[region.name] = cells_of_group(region, where);
   std::vector<double> out;
   std::map<std::string, int> cells;
   for (int cell = 0; cell < mesh.cell_count(); ++cell) {
@@ -95,11 +128,12 @@ std::vector<double> region_values(const Energy& energy, const LawField& field, c
     for (int a = 0; a < n; ++a) centre += mesh.X.col(mesh.cells[static_cast<size_t>(cell * n + a)]) / n;
     std::string name = kOtherwise;
     for (const SceneRegion& region : where.object->regions) {
-      bool inside = values.contains(region.name);
-      for (int i = 0; i < 3; ++i)
-        inside = inside && region.min[static_cast<size_t>(i)] <= centre[i] &&
-                 centre[i] <= region.max[static_cast<size_t>(i)];
-      if (inside) name = region.name;
+      const auto group = groups.find(region.name);
+      const bool inside =
+          group == groups.end()
+              ? holds(region, centre)
+              : group->second[static_cast<size_t>(where.body->cell_from[static_cast<size_t>(cell)])] != 0;
+      if (values.contains(region.name) && inside) name = region.name;
     }
     if (!values.contains(name))
       throw SourceError(field.value->at("regions"),

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <filesystem>
 
 #include "runtime/error.h"
 #include "runtime/mesh/mesh_stencils.h"
@@ -125,10 +124,14 @@ Potential object_potential(const UsedLaw& law, const Kernel& kernel, const Body&
   return out;
 }
 
-// A law in a folder named loads, which is in proportion to its first param.
-bool is_load(const Energy& energy) {
-  return std::filesystem::path(energy.file).parent_path().filename() == "loads" &&
-         !energy.with_role(Role::param).empty();
+// Stiffness is that of stored energy.
+void check_damping(const Energy& energy, const EnergyUse& use) {
+  const Symbol* dt = energy.find("dt");
+  if (use.stiffness_damping == 0 || dt == nullptr || dt->role != Role::lag) return;
+  throw SourceError(use.at("stiffness_damping"),
+                    fmt::format("{} damps itself (it has the lag dt) and stores no energy; 'stiffness_damping' belongs "
+                                "to a law that does",
+                                energy.name));
 }
 
 }  // namespace
@@ -138,6 +141,7 @@ std::vector<UsedLaw> object_laws(const SceneObject& object, Laws& laws) {
   for (const EnergyUse& use : object.energies) {
     const Energy& energy = laws.get(use);
     check_supported(energy, use.at("law"));
+    check_damping(energy, use);
     UsedLaw law{&energy, &energy, checked_params(energy, use, object.thickness), law_fields(energy, use, object),
                 {},      {}};
     std::vector<std::string> over_mesh;
@@ -191,8 +195,9 @@ void add_object(const Scene& scene, const SceneObject& object, const std::vector
   for (size_t i = 0; i < laws.size(); ++i) try {
       const Energy& energy = *laws[i].energy;
       const int index = out.system->add(object_potential(laws[i], kernels.get(energy), out.bodies[body], out));
-      if (!is_load(*laws[i].declared)) continue;
-      const std::string& param = laws[i].declared->with_role(Role::param).front()->name;
+      if (object.energies[i].stiffness_damping > 0) out.system->damp(index, object.energies[i].stiffness_damping);
+      const std::string& param = laws[i].declared->load;
+      if (param.empty()) continue;
       const auto is_it = [&](const LawField& field) { return field.param->name == param; };
       const auto field = std::find_if(laws[i].fields.begin(), laws[i].fields.end(), is_it);
       if (scene.time.quasi_static() && field != laws[i].fields.end())

@@ -62,6 +62,7 @@ struct EnergyUse : Located {
   std::string law;    // a name in the catalogue, or a path ending in .energy relative to the scene file; or "" and
   std::string text;   // the energy itself, as an .energy file holds it
   int text_line = 0;  // of the scene file, where the text begins
+  double stiffness_damping = 0;  // s
   std::map<std::string, ParamValue> params;
 };
 
@@ -72,9 +73,10 @@ struct BoxSelector : Located {
   Vector3 max = {inf, inf, inf};
 };
 
-// The cells whose centre is in a box.
+// The cells whose centre is in a box, or those of a physical group of the mesh file.
 struct SceneRegion : BoxSelector {
   std::string name;
+  std::string group;  // name or number; "": by the box
 };
 
 // Vertices in a box that do not move along some axes.
@@ -173,6 +175,7 @@ struct SceneObject : SceneShape {
   double cross_section = 0;       // m^2, of a line
   double volume = 0;              // m^3, of a loose point
   Vector3 velocity = {0, 0, 0};   // m/s
+  double mass_damping = 0;        // 1/s
   std::vector<EnergyUse> energies;
   std::vector<SceneRegion> regions;
   std::vector<FixedBox> fixed;

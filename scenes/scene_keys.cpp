@@ -5,7 +5,7 @@
 
 #include "runtime/mesh/quadrature.h"
 #include "scenes/contact_keys.h"
-#include "scenes/field_keys.h"
+#include "scenes/energy_keys.h"
 #include "scenes/shape_keys.h"
 #include "scenes/time_keys.h"
 
@@ -71,60 +71,6 @@ Section<OutputSettings> output_section() {
   return out;
 }
 
-// An energy in the scene itself. Every line of it is a line of the file, so that messages point there.
-Key<EnergyUse> energy_text_key() {
-  Key<EnergyUse> key;
-  key.text = {
-      "text", "string",
-      "1",    "",
-      "none", "in place of 'law', the energy itself, as an .energy file holds it, between lines of three quotes"};
-  key.read = [](const toml::node& node, const std::string& file, EnergyUse& use) {
-    use.text = read_text(node, {"text", "1", {}}, file);
-    const auto lines = static_cast<unsigned>(std::count(use.text.begin(), use.text.end(), '\n'));
-    const toml::source_region& region = node.source();
-    const unsigned height = region.end.line - region.begin.line;
-    if (height != lines && height != lines + 1)
-      throw SourceError(
-          place_of(region, file),
-          "'text' must stand between two lines of three quotes, ''' or \"\"\", without line breaks that are "
-          "written as \\n or taken away by a \\ at the end of a line");
-    use.text_line = static_cast<int>(region.begin.line + (height - lines));
-  };
-  return key;
-}
-
-Section<EnergyUse> energy_section() {
-  using T = EnergyUse;
-  Section<T> out{
-      "[[object.energy]]",
-      "One law that the object obeys. Every other key is a param of that energy (`ergon show LAW` lists "
-      "them with unit and range): a number, a string with a unit, an array for a vector or a matrix, or a "
-      "table where it varies. The param `weight` of any energy is what its value is multiplied by, 1 if left "
-      "out.",
-      {},
-      {},
-      {},
-      {text_of(field_section())}};
-  out.keys = {
-      text_key("law", &T::law, Need::optional,
-               "name of an energy in the catalogue, or path of an .energy file relative to the scene",
-               "required, or 'text'"),
-      energy_text_key(),
-  };
-  out.check = [](const std::string&, const T& use) {
-    if (use.wrote("law") && use.wrote("text"))
-      throw SourceError(use.at("text"), "'law' and 'text' are two ways to say which energy; leave one of them out");
-    if (!use.wrote("law") && !use.wrote("text"))
-      throw SourceError(use.place,
-                        "[[object.energy]] lacks the key 'law': name of an energy in the catalogue, or path of an "
-                        ".energy file relative to the scene; or the key 'text' with the energy itself");
-  };
-  out.other = [](const toml::key& key, const toml::node& node, const std::string& file, T& use) {
-    use.params[std::string(key.str())] = read_param(key, node, file);
-  };
-  return out;
-}
-
 // Keys of a box that selects vertices.
 template <class T>
 std::vector<Key<T>> selector_keys() {
@@ -143,13 +89,21 @@ Section<SceneRegion> region_section() {
   using T = SceneRegion;
   Section<T> out{"[[object.region]]",
                  "A box; the object's cells whose centre is in it (after scale, rotate and translate) are a region, in "
-                 "which params may have values of their own.",
+                 "which params may have values of their own. Or a physical group of the .msh file.",
                  {},
                  {},
                  {}};
   out.keys = selector_keys<T>();
   out.keys.insert(out.keys.begin(), text_key("name", &T::name, Need::required, "a name of its own in the object"));
-  out.check = [](const std::string&, const T& region) { check_selector(region); };
+  out.keys.push_back(text_key("group", &T::group, Need::optional,
+                              "in place of a box, a physical group of the mesh file, by its name, or its number in "
+                              "quotes where it has none",
+                              "none"));
+  out.check = [](const std::string&, const T& region) {
+    check_selector(region);
+    if (region.wrote("group") && (region.wrote("min") || region.wrote("max")))
+      throw SourceError(region.at("group"), "'group' and a box are two ways to say which cells; leave one of them out");
+  };
   return out;
 }
 
@@ -314,6 +268,8 @@ Section<SceneObject> object_section() {
       number_key("volume", &T::volume, "m^3", positive, Need::optional, "of each loose point, for its mass",
                  "required for loose points"),
       vector_key("velocity", &T::velocity, "m/s", any, Need::optional, "velocity at the start"),
+      number_key("mass_damping", &T::mass_damping, "1/s", not_negative, Need::optional,
+                 "rate at which a free motion loses its velocity: Rayleigh damping by mass (energy drag)"),
       tables_key("energy", &T::energies, energy_section, Need::optional, "what a free object is made of; at least one"),
       tables_key("region", &T::regions, region_section, Need::optional, "named parts of the object, for params"),
       tables_key("fixed", &T::fixed, fixed_section, Need::optional, "vertices that never move"),

@@ -27,9 +27,9 @@ Section<TimeSettings> time_section() {
           "of first order implicit_euler, which damps; of second bdf2 (one solve per step), sdirk2 and tr_bdf2 (two), "
           "which damp little, newmark, generalised_alpha and midpoint, which damp next to nothing; midpoint and "
           "generalised_alpha go on beyond the state they solve for, which contact may forbid: the step then fails; "
-          "quasi_static knows no inertia: each step ends in an equilibrium, of loads (gravity, and laws in folders "
-          "named "
-          "loads) that grow in proportion to time, up to the end of the scene where they act in full, and of scripted "
+          "quasi_static knows no inertia: each step ends in an equilibrium, of loads (gravity, [[object.load]], and "
+          "laws that state `load`) that grow in proportion to time, up to the end of the scene where they act in full, "
+          "and of scripted "
           "motions at that time"),
   };
   out.check = [](const std::string&, const T& time) {

@@ -31,6 +31,7 @@ void TimeStepper::take_balance(const Eigen::Matrix3Xd& x) {
   sum(stored, balance_.stored);
   sum(friction, balance_.friction);
   sum(damping, balance_.damping);
+  if (system_->damps()) system_->add_damping(system_->lagged_velocity(x), balance_.damping);
 }
 
 // `state`: after the step; the state before is in it too.

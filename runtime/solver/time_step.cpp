@@ -36,6 +36,7 @@ StepRecord TimeStepper::step(State& state) {
 
     set_internal(state);
     const Integrator integrator = integrator_for(state);
+    if (integrator.has_inertia && system_->damps()) lag_stiffness(state);
     if (known_.x.cols() == 0 || known_.x != state.x) energies(state);
     std::vector<Moment> moments = known_moments(state, integrator);
     const bool was_stable = integrator.has_inertia || is_stable(state);
@@ -81,6 +82,7 @@ Eigen::Matrix3Xd TimeStepper::free_acceleration(const State& state) {
   }
   Eigen::Matrix3Xd gradient;
   system_->gradient_of(stored, state.x, gradient);
+  if (system_->damps()) system_->add_damping(state.v, gradient);
   system_->guide(gradient);
   for (int v = 0; v < system_->vertices(); ++v) {
     if (system_->block_of(v) < 0)
@@ -180,6 +182,14 @@ void TimeStepper::set_lags(const Solve& stage) {
     set_vector_lags(potential, "hat", stage.xhat);
     set_vector_lags(potential, "lag", stage.xlag);
   }
+  if (system_->damps() && integrator_named(options_.integrator).has_inertia)
+    system_->lag_motion(stage.xlag, stage.lag_dt);
+}
+
+// With what the step starts from as lags.
+void TimeStepper::lag_stiffness(const State& state) {
+  set_lags({state.x, options_.dt, state.x, options_.dt, state.time});
+  system_->lag_stiffness(state.x);
 }
 
 void TimeStepper::set_internal(const State& state) {

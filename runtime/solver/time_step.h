@@ -10,6 +10,9 @@
 // velocity at the end of the stage, with the `dt` of potentials without `hat`; for implicit Euler both are those of the
 // step. A potential with the lag dt is a term of the incremental potential and not stored energy.
 //
+// Damping in proportion to stiffness (System::damp) takes the stiffness at the start of the step, for all its stages,
+// and the velocity at the end of the stage. Steps without inertia have none.
+//
 // A density has the lag `Flag` in place of positions: its F there. Lags that an energy renews itself are part of the
 // state; they change once a step is accepted, by what the energy sees at its end with the lags of the last stage.
 
@@ -78,7 +81,7 @@ struct Budget {
   double loads = 0;       // by loads that grow
   double barrier = 0;     // by changes of barrier stiffness
   double friction = 0;    // dissipated
-  double damping = 0;     // dissipated by potentials with the lag dt
+  double damping = 0;     // dissipated by potentials with the lag dt, and in proportion to stiffness
   double integrator = 0;  // dissipated by the way in which time is cut into steps
   double residual = 0;    // of the last Newton solve: the work of forces that do not balance
 };
@@ -172,6 +175,7 @@ class TimeStepper {
   void judge_path(const State& state, const Eigen::Matrix3Xd& x, bool was_stable, NewtonResult& result);
   Eigen::Matrix3Xd free_acceleration(const State& state);
   void set_lags(const Solve& stage);
+  void lag_stiffness(const State& state);
   void set_internal(const State& state);
   void begin_contact(const Solve& stage, const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& v, StepRecord& record);
   NewtonResult solve(const Solve& stage, Eigen::Matrix3Xd& x, StepRecord& record);

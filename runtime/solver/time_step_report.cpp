@@ -111,6 +111,8 @@ std::vector<std::string> TimeStepper::skipped_parts() const {
   const std::vector<std::string> more =
       contact_ ? contact_->skipped() : std::vector<std::string>{"contact: nothing in the scene may touch"};
   skipped.insert(skipped.end(), more.begin(), more.end());
+  if (system_->damps() && !integrator_named(options_.integrator).has_inertia)
+    skipped.emplace_back("stiffness damping: steps without inertia have none");
   return skipped;
 }
 

@@ -215,6 +215,44 @@ TEST(fields, two_bars_in_a_row_share_the_displacement_by_their_stiffness) {
   EXPECT_NEAR(mid_of("\"1 MPa\""), 0.001, 1e-12);
 }
 
+// The bar as a file of Gmsh: cells of its left half are in a group with a name, those of the right in one without.
+TEST(fields, regions_may_be_physical_groups_of_the_mesh_file) {
+  const fs::path folder = fs::path(testing::TempDir()) / "fields_groups_test";
+  fs::create_directories(folder);
+  const Mesh mesh = box_mesh(Element::hex8, {2, 0.1, 0.1}, {20, 1, 1});
+  std::ofstream out(folder / "bar.msh");
+  out.precision(17);
+  out << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n3 4 \"left half\"\n$EndPhysicalNames\n$Nodes\n"
+      << mesh.vertices() << "\n";
+  for (int v = 0; v < mesh.vertices(); ++v)
+    out << v + 1 << " " << mesh.X(0, v) << " " << mesh.X(1, v) << " " << mesh.X(2, v) << "\n";
+  out << "$EndNodes\n$Elements\n20\n";
+  for (int cell = 0; cell < 20; ++cell) {
+    out << cell + 1 << " 5 2 " << (mesh.X(0, mesh.cells[static_cast<size_t>(8 * cell)]) < 0.95 ? 4 : 5) << " 1";
+    for (int a = 0; a < 8; ++a) out << " " << mesh.cells[static_cast<size_t>(8 * cell + a)] + 1;
+    out << "\n";
+  }
+  out << "$EndElements\n";
+  out.close();
+  const std::string box = "box = { size = [2, 0.1, 0.1], cells = [20, 1, 1] }\nelement = \"hex8\"";
+  const auto text = [&](const std::string& group) {
+    std::string made =
+        bar("{ regions = { stiff = \"3 MPa\", soft = \"1 MPa\" } }",
+            "region = [{ name = \"stiff\", group = \"" + group + "\" }, { name = \"soft\", group = \"5\" }]\n");
+    return made.replace(made.find(box), box.size(), "mesh = \"bar.msh\"");
+  };
+  const std::string file = (folder / "a.toml").string();
+  EXPECT_NEAR(finish(read_scene_text(text("left half"), file)).summary.probes.at(0).second[0] - 1, 0.0005, 1e-12);
+  try {
+    finish(read_scene_text(text("left hlf"), file));
+    ADD_FAILURE();
+  } catch (const SourceError& bad) {
+    EXPECT_EQ(std::string(bad.what()),
+              file + ":12:37: " + (folder / "bar.msh").string() +
+                  " has no physical group 'left hlf' of cells (its groups: 5, left half); did you mean 'left half'?");
+  }
+}
+
 // u' = force/(E*A) with E = E0*(1 + x/L): the mid moves by ln(1.5)/ln(2) of the end, where the cells' mean of 1/E is
 // taken by two points of quadrature each, which is exact to 1e-6 here.
 TEST(fields, a_formula_in_the_rest_position_grades_a_bar) {

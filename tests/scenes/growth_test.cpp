@@ -1,0 +1,115 @@
+// Bodies that heat or moisture makes larger, and muscle that contracts: what has no stress is known exactly.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/scenes/finish_scene.h"
+
+namespace ergon {
+namespace {
+
+std::string scene(const std::string& object) {
+  return R"(
+gravity = [0, 0, 0]
+[time]
+dt = 1
+steps = 1
+integrator = "quasi_static"
+[solver]
+tolerance = 1e-12
+)" + object;
+}
+
+// Free expansion keeps the shape: every length grows by 1 + alpha*dT, and no stress is left.
+TEST(growth, a_free_solid_expands_without_stress) {
+  const FinishedScene end = finish_text(scene(R"(
+[[object]]
+name = "block"
+element = "tet10"
+box = { size = [0.2, 0.1, 0.1], cells = [2, 1, 1] }
+density = 1000
+fixed = [{ max = [0, inf, inf], axes = "x" }, { max = [inf, 0, inf], axes = "y" }, { max = [inf, inf, 0], axes = "z" }]
+energy = [{ law = "thermal_neo_hookean", E = 1e6, nu = 0.3, alpha = 1e-3, dT = { formula = "heat*t/T", heat = "200 K", T = "1 s" } }]
+)"));
+  ASSERT_EQ(end.summary.failure, "");
+  EXPECT_LT((end.end.x - 1.2 * end.built.start.x).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_NEAR(end.summary.end_energy, 0, 1e-12);
+}
+
+TEST(growth, a_free_membrane_grows_without_stress) {
+  const FinishedScene end = finish_text(scene(R"(
+[[object]]
+name = "sheet"
+element = "tri3"
+box = { size = [0.2, 0.1, 0.1], cells = [4, 2, 1] }
+density = 1000
+thickness = 1e-3
+fixed = [{ max = [0, inf, inf], axes = "x" }, { max = [inf, 0, inf], axes = "y" }, { axes = "z" }]
+energy = [{ law = "growing_membrane", E = 1e6, nu = 0.3, growth = 1.3 }]
+)"));
+  ASSERT_EQ(end.summary.failure, "");
+  EXPECT_LT((end.end.x - 1.3 * end.built.start.x).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_NEAR(end.summary.end_energy, 0, 1e-12);
+}
+
+// A strip of two layers of equal thickness and stiffness, of which one expands: its curvature is 3/2*alpha*dT/h.
+// Timoshenko 1925, Analysis of Bi-Metal Thermostats, J. Opt. Soc. Am. 11; the deflection of the end of a cantilever,
+// 3 L^2/(4 h)*alpha*dT, is verification E.15 of Hyfeast.
+TEST(growth, a_strip_of_two_layers_bends_as_timoshenko_says) {
+  const double length = 1, h = 0.1, strain = 1e-4;
+  const FinishedScene end = finish_text(scene(R"(
+[[object]]
+name = "strip"
+element = "hex27"
+box = { size = [1, 0.1, 0.1], cells = [8, 1, 2] }
+density = 1000
+fixed = [{ max = [0, inf, inf], axes = "x" }, { max = [inf, 0, inf], axes = "y" }, { max = [0, inf, 0], axes = "z" }]
+region = [{ name = "lower", max = [inf, inf, 0.05] }]
+energy = [{ law = "thermal_neo_hookean", E = 1e6, nu = 0, alpha = 1e-5, dT = { regions = { lower = "10 K", otherwise = "0 K" } } }]
+)"));
+  ASSERT_EQ(end.summary.failure, "");
+  const Eigen::Matrix3Xd& X = end.built.start.x;
+  double deflection = 0;
+  for (int v = 0; v < X.cols(); ++v)
+    if (X(0, v) > length - 1e-9 && X(2, v) < 1e-9) deflection = end.end.x(2, v);
+  EXPECT_NEAR(deflection, 3 * length * length / (4 * h) * strain, 0.01 * deflection);
+}
+
+// Fibres along x that are active by a table in time: the block shortens until E/2*stretch*(stretch^2 - 1) + activation*
+// tension = 0, the nominal stress of St. Venant-Kirchhoff without lateral contraction and that of muscle.
+TEST(growth, muscle_contracts_as_its_activation_in_time_says) {
+  BuiltScene built = build_text(scene(R"toml(
+[[object]]
+name = "muscle"
+element = "hex8"
+box = { size = [0.2, 0.1, 0.1], cells = [2, 1, 1] }
+density = 1000
+fixed = [{ max = [0, inf, inf], axes = "x" }, { max = [inf, 0, inf], axes = "y" }, { max = [inf, inf, 0], axes = "z" }]
+[[object.energy]]
+law = "st_venant_kirchhoff"
+E = "100 kPa"
+nu = 0
+[[object.energy]]
+law = "muscle"
+tension = "10 kPa"
+a = [1, 0, 0]
+activation = { formula = "spline(t/T, [0, 1, 2, 3], [0, 1, 0.5, 0])", T = "1 s" }
+)toml"));
+  TimeStepper stepper = stepper_of(built);
+  State state = built.start;
+  for (const double activation : {1.0, 0.5, 0.0}) {
+    const StepRecord record = stepper.step(state);
+    ASSERT_TRUE(record.converged) << record.reason;
+    double low = 0.7, high = 1.1;
+    for (int i = 0; i < 60; ++i) {
+      const double stretch = (low + high) / 2;
+      (1e5 / 2 * stretch * (stretch * stretch - 1) + activation * 1e4 < 0 ? low : high) = stretch;
+    }
+    EXPECT_NEAR(state.x.row(0).maxCoeff(), 0.2 * high, 1e-10) << activation;
+    EXPECT_NEAR(state.x.row(1).maxCoeff(), 0.1, 1e-10);
+  }
+}
+
+}  // namespace
+}  // namespace ergon
