@@ -65,7 +65,7 @@ TEST_F(SlowDocs, TheStepsOfAuthoringWork) {
   const Answer answer = shell("set -e; PATH=" + test::built() + ":$PATH\n" + scripts[0]);
   EXPECT_EQ(answer.code, 0) << answer.out << answer.err;
   for (const char* made : {"my_rubber.energy", "my_rubber.svg", "my_fit.svg", "my_bending.svg", "my_bending.csv",
-                           "out/my_scene/my_scene.pvd"})
+                           "out/my_scene/my_scene.pvd", "out/my_sheet/my_sheet.pvd"})
     EXPECT_TRUE(std::filesystem::exists(folder / made)) << made;
 }
 

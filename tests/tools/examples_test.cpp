@@ -43,5 +43,19 @@ TEST_F(SlowExamples, ASurfaceIsLaidOutFlat) {
   EXPECT_EQ(example("surface_parametrisation").code, 1);
 }
 
+// Of a bunny a sixth faces an axis within 15 degrees; of what becomes a cube most of it.
+TEST_F(SlowExamples, ASurfaceIsStyledByItsNormals) {
+  const Answer answer = example("normal_stylisation '" + test::source("/scenes/meshes/bunny.obj") + "' cube.obj");
+  EXPECT_EQ(answer.code, 0) << answer.out << answer.err;
+  double before = 0, after = 0;
+  ASSERT_EQ(std::sscanf(answer.out.c_str(), "%*d triangles: %lf of the area along an axis before, %lf after", &before,
+                        &after),
+            2);
+  EXPECT_LT(before, 0.2);
+  EXPECT_GT(after, 0.5);
+  EXPECT_THAT(read("cube.obj"), HasSubstr("\nf "));
+  EXPECT_EQ(example("normal_stylisation").code, 1);
+}
+
 }  // namespace
 }  // namespace ergon
