@@ -38,7 +38,7 @@ Between shapes_at(double time, const std::vector<ScriptShape>& shapes) {
 
 void Script::add(std::vector<int> vertices, const Eigen::Matrix3Xd& start, const Eigen::Vector3d& center,
                  std::vector<ScriptKey> keys, std::vector<ScriptShape> shapes) {
-  Part part{std::move(vertices), center, std::move(keys), {}};
+  Part part{std::move(vertices), center, std::move(keys), {}, {}};
   part.shapes.push_back({0, Eigen::Matrix3Xd(3, part.vertices.size())});
   for (size_t i = 0; i < part.vertices.size(); ++i)
     part.shapes[0].x.col(static_cast<Eigen::Index>(i)) = start.col(part.vertices[i]);
@@ -46,6 +46,11 @@ void Script::add(std::vector<int> vertices, const Eigen::Matrix3Xd& start, const
   for (ScriptShape& shape : part.shapes) shape.x.colwise() -= center;
   vertices_.insert(vertices_.end(), part.vertices.begin(), part.vertices.end());
   parts_.push_back(std::move(part));
+}
+
+void Script::turn(int vertex, const Eigen::Vector3d& along) {
+  parts_.back().twists.emplace_back(vertex, along);
+  vertices_.push_back(vertex);
 }
 
 void Script::place(double time, Eigen::Matrix3Xd& x) const {
@@ -61,6 +66,7 @@ void Script::place(double time, Eigen::Matrix3Xd& x) const {
       const Eigen::Vector3d from = shape.before.col(k);
       x.col(part.vertices[i]) = center + rotation * (from + shape.part * (shape.after.col(k) - from));
     }
+    for (const auto& [vertex, along] : part.twists) x.col(vertex) = Eigen::Vector3d(now.rotate.dot(along), 0, 0);
   }
 }
 

@@ -3,6 +3,7 @@
 // time, free of accumulated error: each state is made from the start.
 
 #include <Eigen/Core>
+#include <utility>
 #include <vector>
 
 namespace ergon {
@@ -28,6 +29,11 @@ class Script {
   void add(std::vector<int> vertices, const Eigen::Matrix3Xd& start, const Eigen::Vector3d& center,
            std::vector<ScriptKey> keys, std::vector<ScriptShape> shapes = {});
 
+  // The twist of an edge (a vertex of the system, whose first component it is, m) turns with the part that was added
+  // last. `along`: the edge's direction at the start, as long as the radius of the twist. Exact where the part turns
+  // about the edge.
+  void turn(int vertex, const Eigen::Vector3d& along);
+
   bool empty() const { return parts_.empty(); }
   const std::vector<int>& vertices() const { return vertices_; }  // of all parts, in order of addition
   // Puts the scripted vertices where they are at a time, s; leaves the others as they are.
@@ -39,6 +45,7 @@ class Script {
     Eigen::Vector3d center;
     std::vector<ScriptKey> keys;
     std::vector<ScriptShape> shapes;  // relative to the centre; that of the start first, at time 0
+    std::vector<std::pair<int, Eigen::Vector3d>> twists;
   };
   std::vector<Part> parts_;
   std::vector<int> vertices_;

@@ -40,6 +40,16 @@ struct Body {
   std::optional<SolidMoments> moments;
   int first_control = 0;  // of its four control points among all vertices of the scene
 
+  // A rod that twists: a unit vector across each cell of `ordered` at rest, the cross-section's first axis; else none.
+  std::vector<Eigen::Vector3d> axes;
+  double gyration = 0;  // m, the radius of gyration of its cross-section
+  int first_twist = 0;  // of the twists of its cells among all vertices of the scene
+
+  bool twists() const { return !axes.empty(); }
+  // Of a vertex of `ordered`, or of the twist of cell c, which is numbered ordered.vertices() + c.
+  int in_scene(int vertex) const {
+    return vertex < ordered.vertices() ? first_vertex + vertex : first_twist + vertex - ordered.vertices();
+  }
   bool affine() const { return moments.has_value(); }
 };
 

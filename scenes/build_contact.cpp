@@ -54,8 +54,8 @@ void add_grounds(const Scene& scene, const ContactLaws& laws, const UsedKernels&
   std::vector<int> surface;
   for (const Body& body : out.bodies)
     for (int vertex : body.surface) surface.push_back(body.first_vertex + vertex);
-  auto ground = std::make_unique<GroundContact>(*out.system, grounds, loaded, surface, out.start.x, out.mass,
-                                                vector(scene.gravity));
+  auto ground = std::make_unique<GroundContact>(*out.system, grounds, loaded, surface, out.start.x,
+                                                out.mass_of_points(), vector(scene.gravity));
   out.ground = ground.get();
   out.contacts->add(std::move(ground));
 }
@@ -113,8 +113,8 @@ void add_surfaces(const Scene& scene, const ContactLaws& laws, const UsedKernels
   if (laws.friction != nullptr) loaded.friction = kernels.get(*laws.friction);
   std::unique_ptr<SurfaceContact> surfaces;
   try {
-    surfaces = std::make_unique<SurfaceContact>(*out.system, std::move(surface), loaded, options, out.start.x, out.mass,
-                                                vector(scene.gravity));
+    surfaces = std::make_unique<SurfaceContact>(*out.system, std::move(surface), loaded, options, out.start.x,
+                                                out.mass_of_points(), vector(scene.gravity));
   } catch (const InputError& bad) {
     throw SourceError(contact.at("barrier"), bad.what());
   }

@@ -13,6 +13,7 @@
 #include "runtime/solver/stopwatch.h"
 #include "scenes/build_affine.h"
 #include "scenes/build_contact.h"
+#include "scenes/build_twist.h"
 #include "scenes/held_check.h"
 #include "scenes/laws.h"
 #include "scenes/object_laws.h"
@@ -136,9 +137,10 @@ void add_world(const Scene& scene, const WorldLaws& world, const UsedKernels& ke
     out.system->add(Potential::on_stencils("inertia", kernels.get(*world.inertia), points, X, {},
                                            {{"mass", masses_of(out.mass, points)}}));
   if (world.gravity != nullptr) {
-    const int index = out.system->add(Potential::on_stencils("gravity", kernels.get(*world.gravity), points, X,
+    const std::vector<int> heavy = heavy_points(out.mass_of_points());
+    const int index = out.system->add(Potential::on_stencils("gravity", kernels.get(*world.gravity), heavy, X,
                                                              {{"g", {scene.gravity.begin(), scene.gravity.end()}}},
-                                                             {{"mass", masses_of(out.mass, points)}}));
+                                                             {{"mass", masses_of(out.mass, heavy)}}));
     add_load(scene, index, "g", {scene.gravity.begin(), scene.gravity.end()}, out);
   }
   if (world.load != nullptr) add_loads(scene, kernels.get(*world.load), out);
@@ -212,6 +214,11 @@ void lay_out(const Scene& scene, BuiltScene& out) {
     body.first_control = vertices;
     vertices += 4;
   }
+  out.points = vertices;
+  for (Body& body : out.bodies) {
+    body.first_twist = vertices;
+    if (body.twists()) vertices += body.ordered.cell_count();
+  }
   out.start.x.resize(3, vertices);
   out.start.v.setZero(3, vertices);
   out.mass.setZero(vertices);
@@ -226,6 +233,7 @@ void lay_out(const Scene& scene, BuiltScene& out) {
       if (!scene.objects[i].affine())
         out.mass.segment(first, count) = lumped_masses(body.ordered, scene.objects[i].density * body.section);
       if (body.affine()) start_affine(scene.objects[i], body, out);
+      start_twist(scene.objects[i], body, out, fixed, guides);
     }
     const auto hold = [&](const std::vector<int>& vertices) {
       for (int vertex : vertices) {
@@ -238,6 +246,7 @@ void lay_out(const Scene& scene, BuiltScene& out) {
     for (const BodyScript& script : body.scripts) {
       hold(script.vertices);
       add_script(script, first, out);
+      follow_twist(script, body, out, fixed);
     }
   }
   if (std::find(fixed.begin(), fixed.end(), 0) == fixed.end())
@@ -264,6 +273,12 @@ std::vector<Probe> probes_of(const Scene& scene, const BuiltScene& built) {
 }
 
 }  // namespace
+
+Eigen::VectorXd BuiltScene::mass_of_points() const {
+  Eigen::VectorXd out = mass;
+  out.tail(mass.size() - points).setZero();
+  return out;
+}
 
 void add_load(const Scene& scene, int potential, const std::string& param, std::vector<double> full, BuiltScene& out) {
   if (scene.time.quasi_static()) out.loads.push_back({potential, param, std::move(full)});
@@ -295,6 +310,7 @@ BuiltScene build_scene(const Scene& scene, const Catalogue& catalogue, const Ker
     for (const SceneObstacle& obstacle : scene.obstacles) out.bodies.push_back(load_obstacle(obstacle, folder));
     for (size_t i = 0; i < used.size(); ++i) {
       check_geometry(scene.objects[i], used[i], out.bodies[i]);
+      set_twist(scene.objects[i], used[i], out.bodies[i]);
       place_fields(scene.objects[i], out.bodies[i], folder, used[i]);
     }
     lay_out(scene, out);
@@ -320,6 +336,7 @@ BuiltScene build_scene(const Scene& scene, const Catalogue& catalogue, const Ker
     if (out.surfaces != nullptr) check_surface_start(scene, out, report);
   }
   out.step = step_options(scene);
+  out.step.points = out.points;
   // An end that is a multiple of dt up to rounding takes no step more.
   out.steps = scene.time.steps ? *scene.time.steps
                                : std::max(1L, static_cast<long>(std::ceil(*scene.time.end / scene.time.dt - 1e-6)));

@@ -52,6 +52,7 @@ struct BuiltScene {
   SurfaceContact* surfaces = nullptr;  // part of contacts; null without [contact]
   Script script;
   Eigen::VectorXd mass;  // kg, per vertex
+  int points = 0;        // vertices that are points of space; those behind are twists of edges
   State start;
   std::vector<Probe> probes;
   StepOptions step;
@@ -63,6 +64,9 @@ struct BuiltScene {
   // its tests.
   std::vector<std::string> warnings;
   BuildSeconds seconds;
+
+  // kg: without what resists twist.
+  Eigen::VectorXd mass_of_points() const;
 };
 
 // Given a mesh of what intersects at the start, before the error that says so.

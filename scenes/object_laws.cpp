@@ -8,6 +8,7 @@
 
 #include "runtime/error.h"
 #include "runtime/mesh/mesh_stencils.h"
+#include "runtime/mesh/rod_frames.h"
 
 namespace ergon {
 namespace {
@@ -31,6 +32,14 @@ bool is_mass(const Energy& energy, const Symbol& rest) {
   return energy.geometry == "point" && rest.name == "mass" && rest.shape.scalar() && to_string(rest.unit) == "kg";
 }
 
+// What a rod that twists has beside lengths.
+bool is_of_rod(const Energy& energy, const Symbol& rest) {
+  if (energy.geometry != "rod_corner") return false;
+  if (rest.name == "d0") return rest.shape == Shape{3, 1} && rest.unit.dimensionless();
+  return rest.shape.scalar() &&
+         ((rest.name == "r" && to_string(rest.unit) == "m") || (rest.name == "twist0" && rest.unit.dimensionless()));
+}
+
 std::string unit_of(const RestSize& size) {
   if (size.dimension() == 0) return "1";
   return size.dimension() == 1 ? "m" : fmt::format("m^{}", size.dimension());
@@ -44,6 +53,7 @@ bool is_size(const RestSize& size, const Symbol& rest) {
 std::string known_rest_data(const std::string& kind) {
   std::vector<std::string> known = {"rest positions (X0[3] for a dof x0)"};
   if (kind == "point") known.emplace_back("mass (kg)");
+  if (kind == "rod_corner") known.insert(known.end(), {"d0[3] (1)", "twist0 (1)", "r (m)"});
   for (const RestSize& size : rest_sizes(kind)) known.push_back(fmt::format("{} ({})", size.name, unit_of(size)));
   return listed(known);
 }
@@ -52,7 +62,8 @@ void check_rest_data(const Energy& energy, const Place& place) {
   const std::vector<RestSize> sizes = rest_sizes(energy.geometry);
   for (const Symbol* rest : energy.with_role(Role::rest)) {
     const auto is_it = [&](const RestSize& size) { return is_size(size, *rest); };
-    if (is_mass(energy, *rest) || is_rest_position(energy, *rest) || std::any_of(sizes.begin(), sizes.end(), is_it))
+    if (is_mass(energy, *rest) || is_rest_position(energy, *rest) || is_of_rod(energy, *rest) ||
+        std::any_of(sizes.begin(), sizes.end(), is_it))
       continue;
     throw SourceError(
         place, fmt::format("a scene cannot supply the rest data '{}' ({}{}) of {}; of a {} it knows {}", rest->name,
@@ -93,11 +104,34 @@ void check_supported(const Energy& energy, const Place& place) {
   check_lags(energy, place);
 }
 
+StencilData rod_data(const Energy& energy, const std::vector<int>& stencils, const Body& body) {
+  StencilData out;
+  const auto wants = [&](const char* name) { return energy.find(name) && energy.find(name)->role == Role::rest; };
+  const size_t count = stencils.size() / 5;
+  if (wants("r")) out["r"].assign(count, body.gyration);
+  if (wants("twist0")) out["twist0"] = frame_turns(body.ordered, stencils, body.axes);
+  for (size_t i = 0; i < count && wants("d0"); ++i) {
+    const Eigen::Vector3d& axis = body.axes[static_cast<size_t>(stencils[5 * i + 3] - body.ordered.vertices())];
+    out["d0"].insert(out["d0"].end(), axis.begin(), axis.end());
+  }
+  return out;
+}
+
+// Without the twists of edges.
+std::vector<int> places_of(const Energy& energy, const std::vector<int>& stencils) {
+  const int points = points_of_stencil(energy.geometry), places = points - twists_of_stencil(energy.geometry);
+  std::vector<int> out;
+  for (size_t i = 0; i < stencils.size(); ++i)
+    if (static_cast<int>(i) % points < places) out.push_back(stencils[i]);
+  return out;
+}
+
 // The stencils are numbered as in the body's mesh.
 StencilData rest_data(const Energy& energy, const std::vector<int>& stencils, const Body& body,
                       const BuiltScene& built) {
   StencilData out;
   const std::vector<RestSize> sizes = rest_sizes(energy.geometry);
+  if (energy.geometry == "rod_corner") out = rod_data(energy, stencils, body);
   for (const Symbol* rest : energy.with_role(Role::rest)) {
     if (is_mass(energy, *rest))
       for (const int vertex : stencils) out["mass"].push_back(built.mass[body.first_vertex + vertex]);
@@ -115,7 +149,7 @@ Potential object_potential(const UsedLaw& law, const Kernel& kernel, const Body&
                                 law.rest);
     std::vector<int> stencils = stencils_on_mesh(energy.geometry, body.ordered);
     StencilData rest = rest_data(energy, stencils, body, built);
-    for (int& vertex : stencils) vertex += body.first_vertex;
+    for (int& vertex : stencils) vertex = body.in_scene(vertex);
     rest.insert(law.rest.begin(), law.rest.end());
     return Potential::on_stencils(energy.name, kernel, stencils, built.start.x, law.params, rest);
   };
@@ -178,10 +212,11 @@ void place_fields(const SceneObject& object, const Body& body, const std::string
   for (UsedLaw& law : laws) {
     if (law.fields.empty()) continue;
     const Energy& energy = *law.declared;
-    const Sites sites = energy.kind == Energy::Kind::density
-                            ? sites_of_cells(body.ordered, body.quadrature)
-                            : sites_of_stencils(body.ordered, stencils_on_mesh(energy.geometry, body.ordered),
-                                                points_of_stencil(energy.geometry));
+    const Sites sites =
+        energy.kind == Energy::Kind::density
+            ? sites_of_cells(body.ordered, body.quadrature)
+            : sites_of_stencils(body.ordered, places_of(energy, stencils_on_mesh(energy.geometry, body.ordered)),
+                                points_of_stencil(energy.geometry) - twists_of_stencil(energy.geometry));
     const FieldPlace place{&object, &body, &sites, folder};
     for (const LawField& field : law.fields) {
       (field.over_mesh() ? law.rest : law.params)[field.param->name] = field_values(energy, field, place);

@@ -169,13 +169,15 @@ struct SceneObject : SceneShape {
   double stiffness = 1e8;  // Pa, of an affine body against strains
   double max_edge = 0;     // m, of the tetrahedra that fill a surface; 0: continued from the surface
   std::string element = "tet4";
-  std::optional<int> quadrature;  // exactness; absent: the element's own
-  double density = 0;             // kg/m^3
-  double thickness = 0;           // m, of a membrane
-  double cross_section = 0;       // m^2, of a line
-  double volume = 0;              // m^3, of a loose point
-  Vector3 velocity = {0, 0, 0};   // m/s
-  double mass_damping = 0;        // 1/s
+  std::optional<int> quadrature;   // exactness; absent: the element's own
+  double density = 0;              // kg/m^3
+  double thickness = 0;            // m, of a membrane
+  double cross_section = 0;        // m^2, of a line
+  Vector3 axis = {0, 0, 1};        // what the first axis of a rod's cross-section points to
+  std::optional<double> gyration;  // m, of a rod's cross-section; absent: of a disc
+  double volume = 0;               // m^3, of a loose point
+  Vector3 velocity = {0, 0, 0};    // m/s
+  double mass_damping = 0;         // 1/s
   std::vector<EnergyUse> energies;
   std::vector<SceneRegion> regions;
   std::vector<FixedBox> fixed;

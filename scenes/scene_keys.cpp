@@ -265,6 +265,12 @@ Section<SceneObject> object_section() {
                  "of a membrane, for its mass and for laws whose param `h` (m) is left out", "required for membranes"),
       number_key("cross_section", &T::cross_section, "m^2", positive, Need::optional, "of a line, for its mass",
                  "required for lines"),
+      vector_key("axis", &T::axis, "1", any, Need::optional,
+                 "of a rod that twists: where the first axis of its cross-section points on its first edge; left out "
+                 "and with that edge along z: x"),
+      number_key("gyration", &T::gyration, "m", positive, Need::optional,
+                 "of a rod that twists: radius of gyration of its cross-section, for its inertia against twist",
+                 "that of a disc"),
       number_key("volume", &T::volume, "m^3", positive, Need::optional, "of each loose point, for its mass",
                  "required for loose points"),
       vector_key("velocity", &T::velocity, "m/s", any, Need::optional, "velocity at the start"),

@@ -40,17 +40,25 @@ std::vector<const Symbol*> Energy::with_role(Role role) const {
 }
 
 const std::vector<std::string>& stencil_names() {
-  static const std::vector<std::string> names = {"point",       "edge",           "corner",   "triangle",
-                                                 "tetrahedron", "hinge",          "patch",    "point_point",
-                                                 "point_edge",  "point_triangle", "edge_edge"};
+  static const std::vector<std::string> names = {"point",       "edge",       "corner",         "triangle",
+                                                 "tetrahedron", "hinge",      "patch",          "rod_corner",
+                                                 "point_point", "point_edge", "point_triangle", "edge_edge"};
   return names;
 }
 
 int points_of_stencil(std::string_view stencil) {
-  constexpr std::array points = {1, 2, 3, 3, 4, 4, 6, 2, 3, 4, 4};
+  constexpr std::array points = {1, 2, 3, 3, 4, 4, 6, 5, 2, 3, 4, 4};
   for (size_t i = 0; i < points.size(); ++i)
     if (stencil_names()[i] == stencil) return points[i];
   return 0;
+}
+
+int twists_of_stencil(std::string_view stencil) { return stencil == "rod_corner" ? 2 : 0; }
+
+bool is_twist(const Energy& energy, const Symbol& dof) {
+  const std::vector<const Symbol*> dofs = energy.with_role(Role::dof);
+  const auto found = std::find_if(dofs.begin(), dofs.end(), [&](const Symbol* one) { return one->name == dof.name; });
+  return dofs.end() - found <= twists_of_stencil(energy.geometry) && found != dofs.end();
 }
 
 std::optional<Shape> shape_of_F(std::string_view geometry) {

@@ -93,6 +93,11 @@ const std::vector<std::string>& stencil_names();
 // Points of a stencil ("point" 1, "edge" 2, "hinge" 4 ...); 0 when there is none of that name.
 int points_of_stencil(std::string_view stencil);
 
+// The last points of a stencil may be twists of edges: their first component alone has a meaning, an angle times a
+// radius (m). They neither turn nor shift with the others, and are 0 at rest. How many a stencil has ("rod_corner" 2).
+int twists_of_stencil(std::string_view stencil);
+bool is_twist(const Energy& energy, const Symbol& dof);
+
 // Shape of F in a density of that geometry; nothing when there is none of that name.
 std::optional<Shape> shape_of_F(std::string_view geometry);
 

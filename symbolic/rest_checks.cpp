@@ -38,14 +38,16 @@ bool has_rest_state(const Energy& energy) {
   if (energy.kind == Energy::Kind::density) return true;
   if (!energy.active.empty()) return false;
   const auto dofs = energy.with_role(Role::dof);
-  return std::all_of(dofs.begin(), dofs.end(), [&](const Symbol* dof) { return rest_position(energy, *dof); });
+  return std::all_of(dofs.begin(), dofs.end(),
+                     [&](const Symbol* dof) { return is_twist(energy, *dof) || rest_position(energy, *dof); });
 }
 
 // Where points were when the step began is there too: nothing moves. What an energy renews itself is as it starts.
 void put_at_rest(const Energy& energy, ExactInputs& inputs) {
   for (const Symbol* dof : energy.with_role(Role::dof)) {
-    inputs[dof->name] =
-        energy.kind == Energy::Kind::density ? undeformed(dof->shape) : inputs.at(rest_position(energy, *dof)->name);
+    inputs[dof->name] = energy.kind == Energy::Kind::density ? undeformed(dof->shape)
+                        : is_twist(energy, *dof)             ? std::vector<Rational>(3, Rational(0))
+                                                             : inputs.at(rest_position(energy, *dof)->name);
     const Symbol* before = energy.find(dof->name + "lag");
     if (before != nullptr && before->shape == dof->shape) inputs[before->name] = inputs[dof->name];
   }

@@ -46,6 +46,7 @@ Finding no_state(const char* check) {
 ExactInputs moved(const Energy& energy, ExactInputs inputs, const std::vector<Rational>& rotation,
                   const std::vector<Rational>& translation) {
   for (const Symbol* dof : energy.with_role(Role::dof)) {
+    if (is_twist(energy, *dof)) continue;
     std::vector<Rational>& x = inputs.at(dof->name);
     for (size_t first = 0; first < x.size(); first += 3) {
       std::vector<Rational> y(3, Rational(0));

@@ -74,6 +74,21 @@ std::vector<StencilPath> stencil_paths(const std::string& stencil) {
   if (stencil == "hinge") return {turned({-0.5 * x, 0.5 * x, y}, -y, -z, 2.5)};
   if (stencil == "patch")  // flat, and the last triangle turns about its edge
     return {turned({-0.5 * x, 0.5 * x, y, x + 0.5 * y, -x + 0.5 * y}, -y, -z, 2.5)};
+  if (stencil == "rod_corner")
+    return {{"twist", "twist", "m", -2.5, 2.5, 0,
+             [=](double s) {
+               return flat({-y, o, y, o, s * x});
+             },
+             [=](double) {
+               return flat({o, o, o, o, x});
+             }},
+            {"angle", "angle", "rad", -2.5, 2.5, 0,
+             [=](double s) {
+               return flat({-y, o, std::cos(s) * y + std::sin(s) * z, o, o});
+             },
+             [=](double s) {
+               return flat({o, o, std::cos(s) * z - std::sin(s) * y, o, o});
+             }}};
   if (stencil == "corner") return {turned({-x, o}, x, y, 2.5)};
   if (stencil == "triangle") return {turned({-x, o}, x, y, 2.5), scaled({o, x, y}), apart({o, x, y}, 3)};
   if (stencil == "tetrahedron") return {scaled({o, x, y, z})};

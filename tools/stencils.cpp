@@ -71,10 +71,10 @@ class Sheets {
   int cells_, row_, size_;
 };
 
-// The first `kept` of every four points.
-std::vector<int> shortened(const std::vector<int>& stencils, size_t kept) {
+// The first `kept` of every `points` points.
+std::vector<int> shortened(const std::vector<int>& stencils, size_t kept, size_t points = 4) {
   std::vector<int> flat;
-  for (size_t start = 0; start < stencils.size(); start += 4) {
+  for (size_t start = 0; start < stencils.size(); start += points) {
     for (size_t i = 0; i < kept; ++i) flat.push_back(stencils[start + i]);
   }
   return flat;
@@ -88,7 +88,8 @@ StencilSample sample_stencils(std::string_view geometry, int cells) {
     std::vector<int> stencils = stencils_on_mesh(geometry, mesh);
     return {std::move(mesh), std::move(stencils)};
   }
-  Sheets sheets(geometry == "patch" ? std::max(cells, 2) : cells);  // two triangles are too few
+  Sheets sheets(geometry == "patch" || geometry == "rod_corner" ? std::max(cells, 2)
+                                                                : cells);  // two triangles are too few
   std::vector<int> stencils;
   if (geometry == "point_triangle") {
     stencils = sheets.point_triangles();
@@ -98,6 +99,8 @@ StencilSample sample_stencils(std::string_view geometry, int cells) {
     stencils = shortened(sheets.point_triangles(), 2);
   } else if (geometry == "edge_edge") {
     stencils = sheets.edge_edges();
+  } else if (geometry == "rod_corner") {
+    stencils = shortened(stencils_on_mesh("patch", sheets.mesh), 5, 6);
   } else {
     stencils = stencils_on_mesh(geometry == "corner" ? "triangle" : geometry, sheets.mesh);
   }

@@ -111,6 +111,33 @@ let      d = inner0*(x3 - x0) + inner1*(x4 - x1) + inner2*(x5 - x2)
 let      D = inner0*(X3 - X0) + inner1*(X4 - X1) + inner2*(X5 - X2)
 value    k/area2*(norm2(d) - norm2(D))^2
 )"},
+      {"rod_corner", "energy of two edges of a rod that twists",
+       R"(# Resists twist of a rod. (This line is the summary: say what the law is for.)
+energy   NAME   rod_corner
+# x0, x1, x2 are the points of two edges; u0[0]/r and u1[0]/r are the angles by which the edges have turned about
+# themselves, beside references that follow the edges from where the step began without turning about them.
+dof      x0 x1 x2   m                                # vectors of 3
+dof      u0 u1      m                                # only [0] has a meaning; 0 at rest
+rest     L0 L1      m      (0, inf)   lengths of both edges at rest             # filled in by the program
+rest     r          m      (0, inf)   radius of gyration of the cross-section   # also filled in
+param    GJ         N*m^2  (0, inf)   stiffness against twist                   # a name, its unit, its range, help
+lag      x0lag[3] x1lag[3] x2lag[3]   m   where the step began
+lag      drift      1                 the angle between the references when the step began
+frame    fixed                                       # angles are told from where the step began
+require  norm2(x1lag - x0lag)*norm2(x2lag - x1lag) > 0
+let      s0 = (x1lag - x0lag)/norm(x1lag - x0lag)
+let      s1 = (x2lag - x1lag)/norm(x2lag - x1lag)
+let      t0 = (x1 - x0)/norm(x1 - x0)
+let      t1 = (x2 - x1)/norm(x2 - x1)
+let      c0 = 1 + dot(s0, t0) + dot(t0, t1) + dot(s0, t1)
+let      c1 = 1 + dot(s0, s1) + dot(s1, t1) + dot(s0, t1)
+require  c0 > 0
+require  c1 > 0
+let      swept = 2*atan(dot(s0, cross(t1, t0))/c0) + 2*atan(dot(s0, cross(s1, t1))/c1)
+let      twist = (u1[0] - u0[0])/r + drift + swept   # references turn as the edges sweep a solid angle
+update   drift = drift + swept                       # kept for the next step
+value    GJ*twist^2/(L0 + L1)
+)"},
       {"point_point", "energy of two points that are not joined by an edge",
        R"(# Holds two points together. (This line is the summary: say what the law is for.)
 energy   NAME   point_point

@@ -13,6 +13,7 @@
 
 #include "runtime/error.h"
 #include "runtime/mesh/element_faces.h"
+#include "runtime/mesh/rod_frames.h"
 
 namespace ergon {
 namespace {
@@ -191,6 +192,7 @@ const std::vector<KindOfStencil>& kinds() {
        {Element::tri3},
        patches_of,
        {{"A", {0, 1, 2}}, {"inner0", {1, 2, 3}, true}, {"inner1", {2, 0, 4}, true}, {"inner2", {0, 1, 5}, true}}},
+      {"rod_corner", 5, {Element::edge2}, rod_corners_of, {{"L0", {0, 1}}, {"L1", {1, 2}}}},
   };
   return table;
 }

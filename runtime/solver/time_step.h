@@ -57,6 +57,7 @@ struct StepOptions {
   bool record_forces = false;       // of contact, in the record of each step
   bool accept_unconverged = false;  // go on from the best state found; the record still says so
   bool estimate_error = false;      // of the integrator, in the record of each step
+  int points = -1;                  // vertices that are points of space, of whose momentum a step tells; -1: all
 };
 
 // A potential of a load, and the values of the param that is in proportion to it.

@@ -52,7 +52,7 @@ void TimeStepper::report(const State& state, const NewtonResult& result, StepRec
     record.budget.integrator -= flow;
   }
   known_ = {state.x, after.by_potential};
-  for (int v = 0; v < system_->vertices(); ++v) {
+  for (int v = 0; v < (options_.points < 0 ? system_->vertices() : options_.points); ++v) {
     const Eigen::Vector3d p = mass_[v] * state.v.col(v), x = state.x.col(v);
     record.momentum.linear += p;
     record.momentum.angular += x.cross(p);

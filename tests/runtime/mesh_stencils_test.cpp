@@ -9,6 +9,7 @@
 #include "runtime/error.h"
 #include "runtime/mesh/curve.h"
 #include "runtime/mesh/mesh_build.h"
+#include "runtime/mesh/rod_frames.h"
 
 namespace ergon {
 namespace {
@@ -38,13 +39,13 @@ TEST(mesh_stencils, cells_must_be_of_their_element) {
             "'hinge' stencils are made from a mesh of Tri3 elements; this one has Quad4");
   EXPECT_EQ(error_of("body_pair", box(Element::tet4, 1)),
             "no stencils 'body_pair' can be made from a mesh; it has point, edge, corner, triangle, tetrahedron, "
-            "hinge, patch");
+            "hinge, patch, rod_corner");
 }
 
 TEST(mesh_stencils, kinds_follow_from_the_element) {
   using Kinds = std::vector<std::string>;
   EXPECT_EQ(stencil_kinds(Element::point), (Kinds{"point"}));
-  EXPECT_EQ(stencil_kinds(Element::edge2), (Kinds{"point", "edge", "corner"}));
+  EXPECT_EQ(stencil_kinds(Element::edge2), (Kinds{"point", "edge", "corner", "rod_corner"}));
   EXPECT_EQ(stencil_kinds(Element::tri3), (Kinds{"point", "edge", "triangle", "hinge", "patch"}));
   EXPECT_EQ(stencil_kinds(Element::quad4), (Kinds{"point", "edge"}));
   EXPECT_EQ(stencil_kinds(Element::tet4), (Kinds{"point", "edge", "tetrahedron"}));
@@ -82,6 +83,49 @@ TEST(mesh_stencils, corners_follow_a_line_and_close_with_it) {
   Mesh star = line_mesh(square, false);  // three edges from vertex 1
   star.cells = {0, 1, 1, 2, 1, 3};
   EXPECT_EQ(stencils_on_mesh("corner", star), (std::vector<int>{0, 1, 2, 0, 1, 3, 2, 1, 3}));
+}
+
+TEST(mesh_stencils, rod_corners_name_the_twists_of_their_edges) {
+  const std::vector<Eigen::Vector3d> square = {{0, 0, 0}, {1, 0, 0}, {1, 2, 0}, {0, 2, 0}};
+  EXPECT_EQ(stencils_on_mesh("rod_corner", line_mesh(square, false)), (std::vector<int>{0, 1, 2, 4, 5, 1, 2, 3, 5, 6}));
+  EXPECT_EQ(stencils_on_mesh("rod_corner", line_mesh(square, true)),
+            (std::vector<int>{3, 0, 1, 7, 4, 0, 1, 2, 4, 5, 1, 2, 3, 5, 6, 2, 3, 0, 6, 7}));
+  Mesh star = line_mesh(square, false);
+  star.cells = {0, 1, 1, 2, 1, 3};
+  EXPECT_EQ(
+      error_of("rod_corner", star),
+      "edges 1 and 2 of this line both begin at vertex 1; a rod that twists does not branch, and its edges run in "
+      "one direction");
+  star.cells = {0, 1, 2, 1, 2, 3};
+  EXPECT_EQ(error_of("rod_corner", star),
+            "edges 0 and 1 of this line both end at vertex 1; a rod that twists does not branch, and its edges run in "
+            "one direction");
+}
+
+// Around a closed line that is not plane the frame turns by the solid angle of its tangents.
+TEST(mesh_stencils, axes_of_cross_sections_are_carried_along_without_turning) {
+  const std::vector<Eigen::Vector3d> bent = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1, 1, 1}};
+  const Mesh open = line_mesh(bent, false);
+  const std::vector<Eigen::Vector3d> axes = cross_section_axes(open, Eigen::Vector3d(5, 2, 0));
+  EXPECT_LT((axes[0] - Eigen::Vector3d::UnitY()).norm(), 1e-15);
+  EXPECT_LT((axes[1] + Eigen::Vector3d::UnitX()).norm(), 1e-15);
+  EXPECT_LT((axes[2] + Eigen::Vector3d::UnitX()).norm(), 1e-15);
+  for (const double turn : frame_turns(open, stencils_on_mesh("rod_corner", open), axes)) EXPECT_NEAR(turn, 0, 1e-15);
+  EXPECT_EQ(cross_section_axes(open, std::nullopt)[0], Eigen::Vector3d::UnitZ());
+  const Mesh closed = line_mesh({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 0, 0.5}}, true);
+  const std::vector<int> corners = stencils_on_mesh("rod_corner", closed);
+  const std::vector<double> turns = frame_turns(closed, corners, cross_section_axes(closed, std::nullopt));
+  const std::vector<double> others = frame_turns(closed, corners, cross_section_axes(closed, Eigen::Vector3d(0, 1, 1)));
+  EXPECT_GT(std::abs(turns[0]), 0.1);  // where edge 0 follows the last
+  for (size_t i = 1; i < turns.size(); ++i) EXPECT_NEAR(turns[i], 0, 1e-15);
+  EXPECT_NEAR(turns[0], others[0], 1e-14) << "whatever the axis";
+  try {
+    cross_section_axes(open, Eigen::Vector3d(2, 0, 0));
+    FAIL();
+  } catch (const InputError& bad) {
+    EXPECT_STREQ(bad.what(),
+                 "the axis of the cross-section, [2, 0, 0], runs along the first edge; it must point across");
+  }
 }
 
 TEST(mesh_stencils, a_patch_is_a_triangle_and_what_lies_across_its_edges) {
