@@ -35,7 +35,8 @@ bool is_mass(const Energy& energy, const Symbol& rest) {
 // What a rod that twists has beside lengths.
 bool is_of_rod(const Energy& energy, const Symbol& rest) {
   if (energy.geometry != "rod_corner") return false;
-  if (rest.name == "d0") return rest.shape == Shape{3, 1} && rest.unit.dimensionless();
+  if (rest.name == "d0" || rest.name == "T0" || rest.name == "T1")
+    return rest.shape == Shape{3, 1} && rest.unit.dimensionless();
   return rest.shape.scalar() &&
          ((rest.name == "r" && to_string(rest.unit) == "m") || (rest.name == "twist0" && rest.unit.dimensionless()));
 }
@@ -53,7 +54,7 @@ bool is_size(const RestSize& size, const Symbol& rest) {
 std::string known_rest_data(const std::string& kind) {
   std::vector<std::string> known = {"rest positions (X0[3] for a dof x0)"};
   if (kind == "point") known.emplace_back("mass (kg)");
-  if (kind == "rod_corner") known.insert(known.end(), {"d0[3] (1)", "twist0 (1)", "r (m)"});
+  if (kind == "rod_corner") known.insert(known.end(), {"T0[3], T1[3] and d0[3] (1)", "twist0 (1)", "r (m)"});
   for (const RestSize& size : rest_sizes(kind)) known.push_back(fmt::format("{} ({})", size.name, unit_of(size)));
   return listed(known);
 }
@@ -110,9 +111,17 @@ StencilData rod_data(const Energy& energy, const std::vector<int>& stencils, con
   const size_t count = stencils.size() / 5;
   if (wants("r")) out["r"].assign(count, body.gyration);
   if (wants("twist0")) out["twist0"] = frame_turns(body.ordered, stencils, body.axes);
-  for (size_t i = 0; i < count && wants("d0"); ++i) {
-    const Eigen::Vector3d& axis = body.axes[static_cast<size_t>(stencils[5 * i + 3] - body.ordered.vertices())];
-    out["d0"].insert(out["d0"].end(), axis.begin(), axis.end());
+  const auto append = [](std::vector<double>& to, const Eigen::Vector3d& v) {
+    to.insert(to.end(), v.begin(), v.end());
+  };
+  for (size_t i = 0; i < count; ++i) {
+    const int* points = &stencils[5 * i];
+    const auto direction = [&](int from, int to) {
+      return Eigen::Vector3d((body.ordered.X.col(points[to]) - body.ordered.X.col(points[from])).normalized());
+    };
+    if (wants("d0")) append(out["d0"], body.axes[static_cast<size_t>(points[3] - body.ordered.vertices())]);
+    if (wants("T0")) append(out["T0"], direction(0, 1));
+    if (wants("T1")) append(out["T1"], direction(1, 2));
   }
   return out;
 }

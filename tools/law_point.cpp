@@ -88,6 +88,8 @@ std::map<std::string, std::vector<double>> usual_data(const Energy& energy,
     std::vector<double> values(static_cast<size_t>(symbol.shape.size()), 0.0);
     if (density && symbol.name == "Flag")
       for (size_t i = 0; i < values.size(); i += 4) values[i] = 1;  // a step that begins undeformed
+    else if (twists_of_stencil(energy.geometry) > 0 && (symbol.name == "T0" || symbol.name == "T1"))
+      values[1] = 1;  // edges along y, as in tools/stencil_path.cpp
     else if (!energy.renews(symbol.name))
       values[0] = usual_value(symbol);
     data[symbol.name] = values;

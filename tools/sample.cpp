@@ -75,7 +75,9 @@ std::map<std::string, std::vector<double>> sample_values(const Energy& energy, R
       }
     }
     // A direction: params of this shape are unit normals.
-    if (symbol->shape == Shape{3, 1} && symbol->unit.dimensionless()) at = {0, 0, 1};
+    if (symbol->shape != Shape{3, 1} || !symbol->unit.dimensionless()) continue;
+    if (twists_of_stencil(energy.geometry) == 0) at = {0, 0, 1};
+    if (twists_of_stencil(energy.geometry) > 0 && role == Role::rest) at = {symbol->name == "d0" ? 1.0 : 0.0, 0, 1};
   }
   return values;
 }

@@ -121,20 +121,24 @@ dof      u0 u1      m                                # only [0] has a meaning; 0
 rest     L0 L1      m      (0, inf)   lengths of both edges at rest             # filled in by the program
 rest     r          m      (0, inf)   radius of gyration of the cross-section   # also filled in
 param    GJ         N*m^2  (0, inf)   stiffness against twist                   # a name, its unit, its range, help
-lag      x0lag[3] x1lag[3] x2lag[3]   m   where the step began
-lag      drift      1                 the angle between the references when the step began
+rest     T0[3] T1[3]   1              directions of both edges as drawn         # also
+lag      moved0[3] moved1[3]   1      change of these when the step begins
+lag      drift      1                 the angle between the references when the step begins
 frame    fixed                                       # angles are told from where the step began
-require  norm2(x1lag - x0lag)*norm2(x2lag - x1lag) > 0
-let      s0 = (x1lag - x0lag)/norm(x1lag - x0lag)
-let      s1 = (x2lag - x1lag)/norm(x2lag - x1lag)
+require  norm2(T0 + moved0) > 0
+require  norm2(T1 + moved1) > 0
+let      s0 = (T0 + moved0)/norm(T0 + moved0)         # where the step began
+let      s1 = (T1 + moved1)/norm(T1 + moved1)
 let      t0 = (x1 - x0)/norm(x1 - x0)
 let      t1 = (x2 - x1)/norm(x2 - x1)
-let      c0 = 1 + dot(s0, t0) + dot(t0, t1) + dot(s0, t1)
-let      c1 = 1 + dot(s0, s1) + dot(s1, t1) + dot(s0, t1)
+let      c0 = norm2(t0 + t1)/2 + dot(s0, t0 + t1)
+let      c1 = norm2(s1 + t1)/2 + dot(s0, s1 + t1)
 require  c0 > 0
 require  c1 > 0
 let      swept = 2*atan(dot(s0, cross(t1, t0))/c0) + 2*atan(dot(s0, cross(s1, t1))/c1)
 let      twist = (u1[0] - u0[0])/r + drift + swept   # references turn as the edges sweep a solid angle
+update   moved0 = t0 - T0
+update   moved1 = t1 - T1
 update   drift = drift + swept                       # kept for the next step
 value    GJ*twist^2/(L0 + L1)
 )"},

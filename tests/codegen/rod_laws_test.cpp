@@ -29,7 +29,9 @@ struct Step {
   double twist0 = 0;
   Vector turn = Vector::Zero();
   double drift = 0;
+  Vector moved[2] = {direction(start, 0) - direction(rest, 0), direction(start, 1) - direction(rest, 1)};
 
+  static Vector direction(const Corner& corner, int edge) { return (corner.x[edge + 1] - corner.x[edge]).normalized(); }
   Inputs inputs(const Corner& now) const {
     Inputs in = {{"L0", {kL}},       {"L1", {kL}},         {"r", {kRadius}},     {"EI", {3}},       {"EI1", {3}},
                  {"EI2", {7}},       {"GJ", {5}},          {"k1", {0}},          {"k2", {0}},       {"tau", {0}},
@@ -38,14 +40,20 @@ struct Step {
       const std::string number = std::to_string(i);
       in["x" + number] = list(now.x[i]);
       in["X" + number] = list(rest.x[i]);
-      in["x" + number + "lag"] = list(start.x[i]);
-      if (i < 2) in["u" + number] = {now.angle[i] * kRadius, 0.7, -0.3};  // the last two have no meaning
+      if (i == 2) continue;
+      in["T" + number] = list(direction(rest, i));
+      in["moved" + number] = list(moved[i]);
+      in["u" + number] = {now.angle[i] * kRadius, 0.7, -0.3};  // the last two have no meaning
     }
     return in;
   }
   void accept(const std::string& law, const Corner& now) {
     const std::vector<double> update = evaluate_reference(test::shipped(law), "", inputs(now), 30).update;
-    if (update.size() == 4) turn = Vector(update[0], update[1], update[2]);
+    if (update.size() == 10) turn = Vector(update[0], update[1], update[2]);
+    for (int i = 0; i < 3; ++i) {
+      moved[0][i] = update[update.size() - 7 + static_cast<size_t>(i)];
+      moved[1][i] = update[update.size() - 4 + static_cast<size_t>(i)];
+    }
     drift = update.back();
     start = now;
   }
@@ -147,9 +155,8 @@ TEST(RodLaws, AHelixOfItsOwnCurvatureAndTwistIsFree) {
   // Both corners have the first axis of the cross-section along kb, halfway between their edges: the twist between.
   const Vector across = kb[0].normalized(), next = kb[1].normalized();
   const double tau = std::atan2(across.cross(next).dot(t[1]), across.dot(next));
-  Step step;
-  for (int i = 0; i < 3; ++i) step.rest.x[i] = at(i);
-  step.start = step.rest;
+  const Corner drawn{{at(0), at(1), at(2)}, {0, 0}};
+  Step step{drawn, drawn};
   step.axis = Eigen::AngleAxisd(-tau / 2, t[0]) * across;
   Corner helix = step.rest;
   helix.angle[1] = tau;

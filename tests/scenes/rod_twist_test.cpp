@@ -43,8 +43,11 @@ TEST(RodTwist, EveryEdgeHasATwistThatHasTheMassOfTheEdge) {
   EXPECT_EQ(held, 1) << "that of the edge both of whose ends are fixed";
   for (int i = 0; i < built.system->potential_count(); ++i) {
     const Potential& potential = built.system->potential(i);
-    if (potential.name() == "gravity") EXPECT_EQ(potential.stencil_count(), 21);
-    if (potential.name() == "discrete_rod") EXPECT_EQ(potential.stencil_count(), 19);
+    const int expected = potential.name() == "gravity"        ? 21
+                         : potential.name() == "inertia"      ? 41
+                         : potential.name() == "discrete_rod" ? 19
+                                                              : 20;
+    EXPECT_EQ(potential.stencil_count(), expected) << potential.name();
   }
 }
 
@@ -79,7 +82,7 @@ TEST(RodTwist, ARodThatTumblesFreelyDoesNotStrain) {
   for (int v = 0; v < 21; ++v) built.start.v.col(v) = spin.cross(built.start.x.col(v) - centre);
   const FinishedScene run = finish(scene, std::move(built));
   ASSERT_EQ(run.summary.failure, "");
-  EXPECT_NEAR(run.summary.end_energy, run.summary.start_energy, 1e-6 * run.summary.start_energy);
+  EXPECT_NEAR(run.summary.end_energy, run.summary.start_energy, 1e-3 * run.summary.start_energy);
   const Eigen::Vector3d start = run.built.start.x.col(20) - run.built.start.x.col(0),
                         end = run.end.x.col(20) - run.end.x.col(0);
   EXPECT_LT(start.normalized().dot(end.normalized()), 0.5) << "it has turned";

@@ -12,7 +12,7 @@ Eigen::Vector3d SceneCase::displacement() const { return (end.x - built.start.x)
 
 Eigen::Vector3d SceneCase::velocity() const { return end.v * built.mass / built.mass.sum(); }
 
-SceneCase run_scene_case(const std::string& name, const std::string& text) {
+SceneCase run_scene_case(const std::string& name, const std::string& text, const SceneCaseOptions& options) {
   const Scene scene = read_scene_text(text, name);
   SceneCase out{build_scene(scene, Catalogue(Catalogue::default_folders()),
                             [](const std::vector<KernelRequest>& requests) {
@@ -20,10 +20,11 @@ SceneCase run_scene_case(const std::string& name, const std::string& text) {
                             }),
                 {},
                 {}};
-  RunOptions options;
-  options.last_state = &out.end;
-  out.summary = run_scene(scene, out.built, options);
-  if (!out.summary.failure.empty()) throw std::runtime_error(name + ": " + out.summary.failure);
+  if (options.start) options.start(out.built);
+  RunOptions run;
+  run.last_state = &out.end;
+  out.summary = run_scene(scene, out.built, run);
+  if (!options.may_stop && !out.summary.failure.empty()) throw std::runtime_error(name + ": " + out.summary.failure);
   return out;
 }
 
