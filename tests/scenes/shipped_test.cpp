@@ -101,6 +101,24 @@ TEST(SlowScenes, a_mat_is_twisted_by_its_ends) {
   EXPECT_LT(mat.summary.smallest_gap, 1e-3);  // it touches itself
 }
 
+// The middle stands out as a loop on two strands that wind around each other.
+TEST(SlowScenes, a_cord_that_is_twisted_coils_around_itself) {
+  const FinishedScene cord = finish("twisted_rod.toml");
+  ASSERT_EQ(cord.summary.failure, "");
+  const Body& body = cord.built.bodies[0];
+  const int count = body.ordered.vertices();
+  int out = 0, side_by_side = 0;
+  for (int a = 0; a < count; ++a) {
+    out += cord.end.x.col(a).tail<2>().norm() > 0.01 ? 1 : 0;
+    for (int b = 0; b < a; ++b) {
+      const double along = std::abs(body.ordered.X(0, a) - body.ordered.X(0, b));
+      side_by_side += along > 0.03 && (cord.end.x.col(a) - cord.end.x.col(b)).norm() < 0.0075 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(out, 15);
+  EXPECT_GT(side_by_side, 10);
+}
+
 TEST(SlowScenes, two_bunnies_fall_on_each_other) {
   const FinishedScene bunnies = finish("two_bunnies.toml", 25);
   ASSERT_EQ(bunnies.summary.failure, "");
