@@ -47,7 +47,10 @@ bool has_offset(const Scene& scene) {
 void add_grounds(const Scene& scene, const ContactLaws& laws, const UsedKernels& kernels, BuiltScene& out) {
   GroundLaws loaded;
   loaded.barrier = kernels.get(*laws.ground);
-  if (laws.friction != nullptr) loaded.friction = kernels.get(*laws.friction);
+  if (laws.friction != nullptr) {
+    loaded.friction = kernels.get(*laws.friction);
+    loaded.friction_secant = kernels.get(*laws.friction_secant);
+  }
   std::vector<Ground> grounds;
   for (const SceneGround& g : scene.grounds)
     grounds.push_back({vector(g.normal), g.height, g.dhat, g.mu, g.epsv, g.stiffness.value_or(0)});
@@ -110,7 +113,10 @@ void add_surfaces(const Scene& scene, const ContactLaws& laws, const UsedKernels
   SurfaceLaws loaded;
   for (size_t kind = 0; kind < kContactKinds; ++kind)
     loaded.barrier[kind] = kernels.get(*laws.surface[kind], barrier_parts[kind].case_name);
-  if (laws.friction != nullptr) loaded.friction = kernels.get(*laws.friction);
+  if (laws.friction != nullptr) {
+    loaded.friction = kernels.get(*laws.friction);
+    loaded.friction_secant = kernels.get(*laws.friction_secant);
+  }
   std::unique_ptr<SurfaceContact> surfaces;
   try {
     surfaces = std::make_unique<SurfaceContact>(*out.system, std::move(surface), loaded, options, out.start.x,
@@ -150,16 +156,19 @@ ContactLaws contact_laws(const Scene& scene, Laws& laws, std::vector<std::string
   const bool friction =
       (scene.contact && has_friction(*scene.contact)) ||
       std::any_of(scene.grounds.begin(), scene.grounds.end(), [](const SceneGround& g) { return g.mu > 0; });
-  if (friction)
+  if (friction) {
     out.friction = &laws.get("friction", whole);
-  else
+    out.friction_secant = &laws.get("friction_secant", whole);
+  } else {
     skipped.push_back("friction: nothing has a coefficient of friction 'mu', no kernel loaded");
+  }
   return out;
 }
 
 void want_kernels(const ContactLaws& laws, UsedKernels& kernels) {
   kernels.want(laws.ground);
   kernels.want(laws.friction);
+  kernels.want(laws.friction_secant);
   for (size_t kind = 0; kind < kContactKinds; ++kind) kernels.want(laws.surface[kind], barrier_parts[kind].case_name);
 }
 

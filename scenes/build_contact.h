@@ -15,6 +15,7 @@ namespace ergon {
 struct ContactLaws {
   const Energy* ground = nullptr;
   const Energy* friction = nullptr;
+  const Energy* friction_secant = nullptr;
   std::array<const Energy*, kContactKinds> surface{};  // by ContactKind; edge_edge and its parallel cases are one
 };
 

@@ -58,6 +58,13 @@ class Contact {
   // no longer compare.
   virtual bool adapt(const Eigen::Matrix3Xd& x) = 0;
 
+  // Around the Hessian of a Newton step at x, and once the whole step from x is known: what keeps such steps from going
+  // past where friction brings things to rest (friction_secants.h). Energies and gradients do not change. Nothing where
+  // there is no friction.
+  virtual void begin_hessian(const Eigen::Matrix3Xd&) {}
+  virtual void end_hessian() {}
+  virtual void judge_step(const Eigen::Matrix3Xd&, const Eigen::Matrix3Xd&) {}
+
   virtual bool owns(int potential) const = 0;  // index in the system: its lags are set here
   virtual bool rubs(int potential) const = 0;  // of those it owns: friction
   virtual bool has_friction() const = 0;       // some pair has a coefficient of friction

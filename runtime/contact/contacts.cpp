@@ -40,6 +40,18 @@ bool Contacts::adapt(const Eigen::Matrix3Xd& x) {
   return changed;
 }
 
+void Contacts::begin_hessian(const Eigen::Matrix3Xd& x) {
+  for (const auto& part : parts_) part->begin_hessian(x);
+}
+
+void Contacts::end_hessian() {
+  for (const auto& part : parts_) part->end_hessian();
+}
+
+void Contacts::judge_step(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& direction) {
+  for (const auto& part : parts_) part->judge_step(x, direction);
+}
+
 bool Contacts::owns(int potential) const {
   return std::any_of(parts_.begin(), parts_.end(), [potential](const auto& part) { return part->owns(potential); });
 }

@@ -18,6 +18,9 @@ class Contacts : public Contact {
   double largest_step(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& direction) override;
   double gap_change(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& direction) override;
   bool adapt(const Eigen::Matrix3Xd& x) override;
+  void begin_hessian(const Eigen::Matrix3Xd& x) override;
+  void end_hessian() override;
+  void judge_step(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& direction) override;
   bool owns(int potential) const override;
   bool rubs(int potential) const override;
   bool has_friction() const override;

@@ -73,6 +73,7 @@ GroundContact::GroundContact(System& system, std::vector<Ground> grounds, const 
       side.friction =
           system.add(Potential::on_stencils("ground_friction" + number, laws.friction, {}, X,
                                             {{"epsv", {side.ground.epsv}}, {"fall", {side.ground.epsv}}}, {}));
+      side.secants.emplace(system, laws.friction_secant, 1, 1);
     }
     sides_.push_back(std::move(side));
   }
@@ -227,6 +228,7 @@ FrictionChange GroundContact::lag_friction(const Eigen::Matrix3Xd& x, const Eige
     found_.clear();
     side.friction_force.clear();
     std::vector<double> start;
+    std::vector<SlidingPoint> sliding;
     for (int v : vertices_) {
       const double force = is_free(v) ? -side.kappa * barrier_slope(gap(side, x, v), side.ground.dhat) : 0;
       result.change += std::abs(force - before[v]);
@@ -235,10 +237,12 @@ FrictionChange GroundContact::lag_friction(const Eigen::Matrix3Xd& x, const Eige
       found_.push_back(v);
       side.friction_force.push_back(force);
       start.insert(start.end(), xlag.col(v).begin(), xlag.col(v).end());
+      sliding.push_back({{v}, {1}, side.ground.normal, xlag.col(v), side.ground.friction * force});
     }
     Potential& friction = system_->potential(side.friction);
     if (found_ != side.rubbing) friction.set_stencils(found_, X_, {});
     side.rubbing = found_;
+    side.secants->set(sliding, side.ground.epsv * dt);
     if (side.rubbing.empty()) continue;
     friction.set_lag("n", components(side.ground.normal));
     friction.set_lag("mu_static", {side.ground.friction});
@@ -250,14 +254,33 @@ FrictionChange GroundContact::lag_friction(const Eigen::Matrix3Xd& x, const Eige
   return result;
 }
 
+void GroundContact::begin_hessian(const Eigen::Matrix3Xd& x) {
+  for (Side& side : sides_) {
+    if (side.secants) side.secants->begin_hessian(x);
+  }
+}
+
+void GroundContact::end_hessian() {
+  for (Side& side : sides_) {
+    if (side.secants) side.secants->end_hessian();
+  }
+}
+
+void GroundContact::judge_step(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& direction) {
+  for (Side& side : sides_) {
+    if (side.secants) side.secants->judge_step(x, direction);
+  }
+}
+
 bool GroundContact::owns(int potential) const {
-  return std::any_of(sides_.begin(), sides_.end(),
-                     [potential](const Side& side) { return side.barrier == potential || side.friction == potential; });
+  return rubs(potential) ||
+         std::any_of(sides_.begin(), sides_.end(), [potential](const Side& side) { return side.barrier == potential; });
 }
 
 bool GroundContact::rubs(int potential) const {
-  return std::any_of(sides_.begin(), sides_.end(),
-                     [potential](const Side& side) { return side.friction >= 0 && side.friction == potential; });
+  return std::any_of(sides_.begin(), sides_.end(), [potential](const Side& side) {
+    return side.friction >= 0 && (side.friction == potential || side.secants->owns(potential));
+  });
 }
 
 bool GroundContact::has_friction() const {

@@ -5,10 +5,12 @@
 
 #include <Eigen/Core>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "runtime/contact/contact.h"
+#include "runtime/contact/friction_secants.h"
 #include "runtime/system.h"
 
 namespace ergon {
@@ -23,11 +25,12 @@ struct Ground {
 };
 
 // The laws, loaded by whoever builds the scene: log_barrier:half_space, with params n, height, dhat and lag kappa;
-// friction, with params epsv, fall and lags n, mu_static, mu_kinetic, force, dt, xlag. The friction kernel may be empty
-// when no ground has friction.
+// friction, with params epsv, fall and lags n, mu_static, mu_kinetic, force, dt, xlag; friction_secant. The friction
+// kernel may be empty when no ground has friction, that of secants always.
 struct GroundLaws {
   Kernel barrier;
   Kernel friction;
+  Kernel friction_secant;
 };
 
 class GroundContact : public Contact {
@@ -50,6 +53,9 @@ class GroundContact : public Contact {
   // Doubles a stiffness that was not fixed when the smallest gap has come near the rounding of positions.
   bool adapt(const Eigen::Matrix3Xd& x) override;
 
+  void begin_hessian(const Eigen::Matrix3Xd& x) override;
+  void end_hessian() override;
+  void judge_step(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& direction) override;
   bool owns(int potential) const override;
   bool rubs(int potential) const override;
   bool has_friction() const override;
@@ -77,6 +83,7 @@ class GroundContact : public Contact {
     std::string name;
     int barrier = -1;  // indices of the potentials
     int friction = -1;
+    std::optional<FrictionSecants> secants;
     double kappa = 0;                                           // N/m
     double start_sum = 0;                                       // m^2, barrier/kappa summed at the start of the step
     double last_gap = std::numeric_limits<double>::infinity();  // m, smallest at the last adapt

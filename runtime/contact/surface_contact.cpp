@@ -80,7 +80,7 @@ SurfaceContact::SurfaceContact(System& system, CollisionSurface surface, const S
                                     [&](const auto& row) { return std::any_of(row.begin(), row.end(), rubs); });
   if (!friction) return;
   if (!laws.friction.table) throw std::logic_error("SurfaceContact: friction without its law");
-  friction_.emplace(system, laws.friction, options_.epsv, options_.fall);
+  friction_.emplace(system, laws.friction, laws.friction_secant, options_.epsv, options_.fall);
 }
 
 std::array<int, 2> SurfaceContact::objects_of(ContactKind kind, const int* vertices) const {
@@ -271,6 +271,18 @@ std::vector<RubbingPair> SurfaceContact::rubbing_pairs(const Eigen::Matrix3Xd& x
 FrictionChange SurfaceContact::lag_friction(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& xlag, double dt) {
   if (!friction_) return {};
   return friction_->lag(rubbing_pairs(x), xlag, dt);
+}
+
+void SurfaceContact::begin_hessian(const Eigen::Matrix3Xd& x) {
+  if (friction_) friction_->secants().begin_hessian(x);
+}
+
+void SurfaceContact::end_hessian() {
+  if (friction_) friction_->secants().end_hessian();
+}
+
+void SurfaceContact::judge_step(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& direction) {
+  if (friction_) friction_->secants().judge_step(x, direction);
 }
 
 bool SurfaceContact::owns(int potential) const {

@@ -33,10 +33,11 @@ struct SurfaceContactOptions {
 };
 
 // The barrier's kernels, by ContactKind, and friction's: a law of the relative position of two points, which may be
-// empty when no pair has friction.
+// empty when no pair has friction; that of secants may be empty too.
 struct SurfaceLaws {
   std::array<Kernel, kContactKinds> barrier;
   Kernel friction;
+  Kernel friction_secant;
 };
 
 class SurfaceContact : public Contact {
@@ -54,6 +55,9 @@ class SurfaceContact : public Contact {
   double gap_change(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& direction) override;
   // Raises the stiffness of pairs of objects whose smallest gap has become too small for the one that they have.
   bool adapt(const Eigen::Matrix3Xd& x) override;
+  void begin_hessian(const Eigen::Matrix3Xd& x) override;
+  void end_hessian() override;
+  void judge_step(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& direction) override;
   bool owns(int potential) const override;
   bool rubs(int potential) const override;
   bool has_friction() const override;

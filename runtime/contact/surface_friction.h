@@ -8,6 +8,7 @@
 
 #include "runtime/contact/contact.h"
 #include "runtime/contact/contact_frame.h"
+#include "runtime/contact/friction_secants.h"
 #include "runtime/system.h"
 
 namespace ergon {
@@ -27,21 +28,25 @@ struct RubbingPair {
 
 class SurfaceFriction {
  public:
-  // Adds potentials of the law to the system: one for each number of points that a pair may have. epsv, fall: m/s.
-  SurfaceFriction(System& system, const Kernel& law, double epsv, double fall);
+  // Adds potentials of the laws friction and friction_secant to the system: one for each number of points that a pair
+  // may have. epsv, fall: m/s.
+  SurfaceFriction(System& system, const Kernel& law, const Kernel& secant, double epsv, double fall);
 
   // From now on friction is that of these pairs, against the displacement from xlag within dt seconds. The change is
   // told of the normal forces on vertices, so that a contact which goes from one triangle to the next changes little.
   FrictionChange lag(const std::vector<RubbingPair>& pairs, const Eigen::Matrix3Xd& xlag, double dt);
 
+  FrictionSecants& secants() { return secants_; }
   int count() const { return count_; }
   bool owns(int potential) const;
 
  private:
   static constexpr int fewest = 2, most = 4;  // points of a pair
   System* system_;
+  double epsv_;
   std::array<int, most + 1> potential_{};  // by number of points
-  Eigen::Matrix3Xd force_;                 // N, normal forces on vertices
+  FrictionSecants secants_;
+  Eigen::Matrix3Xd force_;  // N, normal forces on vertices
   int count_ = 0;
 };
 

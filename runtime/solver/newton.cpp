@@ -95,9 +95,12 @@ NewtonResult Newton::minimise(System& system, Eigen::Matrix3Xd& x, const NewtonO
 // One step from x, whose energy is known.
 Newton::Progress Newton::iterate(System& system, Eigen::Matrix3Xd& x, const NewtonOptions& options, Contact* contact,
                                  NewtonResult& result) {
+  if (contact) contact->begin_hessian(x);
   evaluate_hessian(system, x, options, result);
   const double slope = find_direction(system, x, options, result);
+  if (contact) contact->end_hessian();
   if (!result.reason.empty()) return {};
+  if (contact) contact->judge_step(x, direction_);
   result.step_speed = largest_motion(system, direction_).value / options.dt;
   if (result.iterations == 0) result.first_step_speed = result.step_speed;
 

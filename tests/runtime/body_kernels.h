@@ -215,4 +215,28 @@ inline Kernel ground_friction() {
   return {nullptr, &kernel};
 }
 
+inline Derivatives friction_secant_law(const Vector3d& x, const double* e, const double*) {
+  const Vector3d t = vector(e + 1);
+  const double stiffness = e[0], along = t.dot(x - vector(e + 4));
+  return {.value = stiffness / 2 * along * along,
+          .gradient = stiffness * along * t,
+          .hessian = stiffness * t * t.transpose()};
+}
+
+inline Kernel friction_secant() {
+  static const ErgonInput inputs[] = {
+      {"stiffness", ERGON_LAG, 1, 1, 0}, {"t", ERGON_LAG, 3, 1, 1}, {"xlag", ERGON_LAG, 3, 1, 4}};
+  static const ErgonKernel kernel = [] {
+    ErgonKernel k{};
+    fill<friction_secant_law, 7, 0>(k);
+    set_point(k);
+    k.energy = "friction_secant";
+    k.n_inputs = 3;
+    k.inputs = inputs;
+    k.psd_hessian = 1;
+    return k;
+  }();
+  return {nullptr, &kernel};
+}
+
 }  // namespace ergon::body_kernels

@@ -36,12 +36,12 @@ struct BodyScene {
     system.add(Potential::on_stencils("spring", body_kernels::spring(), edges, X, {{"k", {k}}}, {}));
   }
 
-  void add_ground(const std::vector<Ground>& grounds) {
+  void add_ground(const std::vector<Ground>& grounds, const Kernel& secant = {}) {
     std::vector<int> points(static_cast<size_t>(state.x.cols()));
     std::iota(points.begin(), points.end(), 0);
     ground = std::make_unique<GroundContact>(
-        system, grounds, GroundLaws{body_kernels::ground_barrier(), body_kernels::ground_friction()}, points, state.x,
-        mass, g);
+        system, grounds, GroundLaws{body_kernels::ground_barrier(), body_kernels::ground_friction(), secant}, points,
+        state.x, mass, g);
   }
 
   void start(const StepOptions& options) {

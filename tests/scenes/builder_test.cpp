@@ -41,8 +41,9 @@ TEST(builder, asks_only_for_the_kernels_that_are_used_and_says_what_is_left_out)
   EXPECT_THAT(kernels_of("gravity = [0, 0, 0]\n" + time_part + block), ElementsAre("stable_neo_hookean", "inertia"));
   EXPECT_THAT(kernels_of(time_part + block + "[[ground]]\n"),
               ElementsAre("stable_neo_hookean", "inertia", "gravity", "log_barrier:half_space"));
-  EXPECT_THAT(kernels_of(time_part + block + "[[ground]]\n[[ground]]\nmu = 0.1\nheight = -1\n"),
-              ElementsAre("stable_neo_hookean", "inertia", "gravity", "log_barrier:half_space", "friction"));
+  EXPECT_THAT(
+      kernels_of(time_part + block + "[[ground]]\n[[ground]]\nmu = 0.1\nheight = -1\n"),
+      ElementsAre("stable_neo_hookean", "inertia", "gravity", "log_barrier:half_space", "friction", "friction_secant"));
 
   EXPECT_THAT(kernels_of(time_part + block + "[contact]\n"),
               ElementsAre("stable_neo_hookean", "inertia", "gravity", "log_barrier:point_point",
