@@ -114,7 +114,7 @@ void add_loads(const Scene& scene, const Kernel& kernel, BuiltScene& out) {
     }
 }
 
-// Of objects that have it, and of the control points of affine ones.
+// Of objects that have it, with their twists, and of the control points of affine ones.
 void add_mass_damping(const Scene& scene, const Kernel& kernel, BuiltScene& out) {
   for (size_t i = 0; i < scene.objects.size(); ++i) {
     if (scene.objects[i].mass_damping == 0) continue;
@@ -122,6 +122,8 @@ void add_mass_damping(const Scene& scene, const Kernel& kernel, BuiltScene& out)
     const int first = body.affine() ? body.first_control : body.first_vertex;
     std::vector<int> points(body.affine() ? 4 : static_cast<size_t>(body.ordered.vertices()));
     std::iota(points.begin(), points.end(), first);
+    for (int cell = 0; body.twists() && cell < body.ordered.cell_count(); ++cell)
+      points.push_back(body.first_twist + cell);
     std::erase_if(points, [&](int v) { return out.mass[v] == 0; });
     out.system->add(Potential::on_stencils("drag", kernel, points, out.start.x,
                                            {{"rate", {scene.objects[i].mass_damping}}},
