@@ -24,8 +24,8 @@ namespace ergon {
 namespace fs = std::filesystem;
 namespace {
 
-// Of a factorisation in the time of one Hessian: measured on 384 Tet10 (stable_neo_hookean, 825 vertices), where a
-// point takes 0.26 us and a factorisation does 4 operations in a nanosecond.
+// Of a factorisation in the time of one Hessian at a point: 0.1 to 0.3 us (`ergon bench kernels`), while factorisations
+// do 2.8 (scenes/cantilever.toml) to 11 (bunny_drop.toml) operations in a nanosecond (factor_flops of summary.json).
 constexpr double flops_per_hessian = 1000;
 constexpr double same_time = 1e-9;  // of the interval
 
