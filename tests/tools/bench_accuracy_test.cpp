@@ -2,9 +2,9 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "tests/tools/command.h"
+#include "tests/tools/json_lines.h"
 #include "tests/tools/xml.h"
 #include "tools/study/accuracy.h"
 
@@ -19,10 +19,7 @@ class BenchAccuracyCommand : public CommandTest {
   std::vector<Json> rows(const std::string& arguments) {
     const Answer answer = ergon("bench " + arguments + " --json");
     EXPECT_EQ(answer.code, 0) << answer.err;
-    std::vector<Json> all;
-    std::istringstream lines(answer.out);
-    for (std::string line; std::getline(lines, line);) all.push_back(Json::parse(line));
-    return all;
+    return json_lines(answer.out);
   }
 };
 

@@ -1,8 +1,8 @@
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 
 #include "tests/symbolic/energy_files.h"
 #include "tests/tools/command.h"
+#include "tests/tools/json_lines.h"
 
 namespace ergon {
 namespace {
@@ -15,10 +15,7 @@ class Bench : public CommandTest {
   std::vector<Json> rows(const std::string& arguments) {
     const Answer answer = ergon("bench " + arguments + " --json");
     EXPECT_EQ(answer.code, 0) << answer.err;
-    std::vector<Json> all;
-    std::istringstream lines(answer.out);
-    for (std::string line; std::getline(lines, line);) all.push_back(Json::parse(line));
-    return all;
+    return json_lines(answer.out);
   }
   static std::vector<std::string> fields(const Json& row) {
     std::vector<std::string> names;

@@ -3,9 +3,9 @@
 #include "tools/verify/verify.h"
 
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 
 #include "tests/tools/command.h"
+#include "tests/tools/json_lines.h"
 
 namespace ergon {
 namespace {
@@ -17,10 +17,7 @@ class Verify : public CommandTest, public testing::WithParamInterface<std::strin
   std::vector<Json> rows(const std::string& arguments, int code) {
     const Answer answer = ergon("verify --json " + arguments);
     EXPECT_EQ(answer.code, code) << answer.out << answer.err;
-    std::vector<Json> all;
-    std::istringstream lines(answer.out);
-    for (std::string line; std::getline(lines, line);) all.push_back(Json::parse(line));
-    return all;
+    return json_lines(answer.out);
   }
   void expect_passed(const std::string& arguments) {
     int judged = 0;
