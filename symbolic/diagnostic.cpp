@@ -7,7 +7,8 @@ namespace ergon {
 
 std::string to_string(const Place& place) {
   if (place.line == 0) return place.file;
-  return place.file + ":" + std::to_string(place.line) + ":" + std::to_string(place.column);
+  const std::string line = place.file + ":" + std::to_string(place.line);
+  return place.column == 0 ? line : line + ":" + std::to_string(place.column);
 }
 
 SourceError::SourceError(const Place& place, const std::string& message)

@@ -8,14 +8,14 @@
 
 namespace ergon {
 
-// A position in a source text. Lines and columns count from 1; line 0 means "the file as a whole".
+// A position in a source text. Lines and columns count from 1; 0 is the file, or the line, as a whole.
 struct Place {
   std::string file;
   int line = 0;
   int column = 0;
 };
 
-// "file:line:column", or "file" when the line is 0.
+// "file:line:column", "file:line" where the column is 0, "file" where the line is.
 std::string to_string(const Place& place);
 
 // Bad input at a known place. what() is "file:line:column: message".

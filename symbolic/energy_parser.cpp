@@ -6,9 +6,8 @@
 
 #include "symbolic/analyse.h"
 #include "symbolic/declaration.h"
-#include "symbolic/energy.h"
+#include "symbolic/energy_parser.h"
 #include "symbolic/expression_parser.h"
-#include "symbolic/statements.h"
 
 namespace ergon {
 namespace {
@@ -24,11 +23,10 @@ std::string list(const std::vector<std::string>& names) { return fmt::format("{}
 
 class EnergyParser {
  public:
-  EnergyParser(std::string_view text, const std::string& file) {
+  EnergyParser(const Statements& statements, std::string_view text, const std::string& file) {
     energy_.text = text;
     energy_.file = file;
-    Statements statements = split_statements(text, file);
-    energy_.summary = std::move(statements.summary);
+    energy_.summary = statements.summary;
     if (statements.all.empty())
       throw SourceError({file, 0, 0}, fmt::format("expected {}, found an empty file", any_header));
     header(statements.all.front());
@@ -285,6 +283,12 @@ class EnergyParser {
 
 }  // namespace
 
-Energy parse_energy(std::string_view text, const std::string& file) { return EnergyParser(text, file).finish(); }
+Energy energy_of(const Statements& statements, std::string_view text, const std::string& file) {
+  return EnergyParser(statements, text, file).finish();
+}
+
+Energy parse_energy(std::string_view text, const std::string& file) {
+  return energy_of(split_statements(text, file), text, file);
+}
 
 }  // namespace ergon

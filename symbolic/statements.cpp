@@ -17,6 +17,7 @@ Place Statement::place(size_t offset) const {
   size_t line = 0;
   while (line + 1 < lines.size() && lines[line + 1].first <= offset) ++line;
   Place p = lines[line].second;
+  if (p.column == 0) return p;
   for (size_t i = lines[line].first; i < offset; ++i) {
     const bool inside_a_character = i < text.size() && (static_cast<unsigned char>(text[i]) & 0xC0) == 0x80;
     p.column += inside_a_character ? 0 : 1;

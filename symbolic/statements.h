@@ -10,7 +10,8 @@
 
 namespace ergon {
 
-// One statement on a single line, whatever the number of lines it was written on.
+// One statement on a single line, whatever the number of lines it was written on. Where these are of another text,
+// their columns are 0.
 struct Statement {
   std::string text;
   std::vector<std::pair<size_t, Place>> lines;  // offset in `text` where each source line starts, and its place
