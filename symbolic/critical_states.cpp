@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "symbolic/double_algebra.h"
+#include "symbolic/sliced.h"
 #include "symbolic/stretches.h"
 
 namespace ergon {
@@ -98,6 +99,19 @@ bool newton(const Energy& energy, const std::string& case_name, const CriticalTa
   return false;
 }
 
+// What the quantity depends on, in which it stands alone: to see it again and again costs no more than itself.
+std::pair<Energy, CriticalTarget> alone(const Energy& energy, const CriticalTarget& target) {
+  if (target.kind == CriticalTarget::Kind::site)
+    return {sliced(energy, find_expression(energy, target.site.expression)), target};
+  const bool active = target.kind == CriticalTarget::Kind::active;
+  const Condition& condition = (active ? energy.active : energy.require)[target.condition];
+  const auto both = std::make_shared<Expression>(
+      Expression{Expression::Kind::subtract, "", {condition.right, condition.left}, condition.place, {}, {}});
+  Energy margin = sliced(energy, both);
+  (active ? margin.active : margin.require).push_back(condition);
+  return {std::move(margin), {target.kind, {}, 0}};
+}
+
 bool within_ranges(const Energy& energy, const ExactInputs& inputs) {
   for (const Symbol& symbol : energy.symbols) {
     if (symbol.role == Role::dof) continue;
@@ -138,20 +152,21 @@ bool clearly_admissible(const Energy& energy, const std::string& case_name, cons
 
 std::optional<CriticalState> solve_critical(const Energy& energy, const std::string& case_name,
                                             const CriticalTarget& target, const ExactInputs& start) {
+  const auto [part, part_target] = alone(energy, target);
   DoubleAlgebra first(start);
-  const auto traced = trace(energy, case_name, first);
-  const auto* jet = quantity(traced, target);
+  const auto traced = trace(part, case_name, first);
+  const auto* jet = quantity(traced, part_target);
   if (jet == nullptr || jet->gradient.empty()) return std::nullopt;
-  const bool dofs = depends_on_dofs(energy, *jet);
+  const bool dofs = depends_on_dofs(part, *jet);
   for (const int multiplicity : {1, 2}) {
     ExactInputs inputs = start;
     auto doubles = [](const ExactInputs& at) { return DoubleAlgebra(at); };
     auto floats = [&](const ExactInputs& at) {
       return ClnAlgebra(at, digits_for_derivatives(energy, critical_digits));
     };
-    if (!newton<DoubleAlgebra>(energy, case_name, target, multiplicity, dofs, 20, 1e-13, doubles, inputs)) continue;
+    if (!newton<DoubleAlgebra>(part, case_name, part_target, multiplicity, dofs, 20, 1e-13, doubles, inputs)) continue;
     if (!within_ranges(energy, inputs)) continue;
-    if (!newton<ClnAlgebra>(energy, case_name, target, multiplicity, dofs, 9, 1e-68, floats, inputs)) continue;
+    if (!newton<ClnAlgebra>(part, case_name, part_target, multiplicity, dofs, 9, 1e-68, floats, inputs)) continue;
     const bool margin = target.kind != CriticalTarget::Kind::site;
     if (clearly_admissible(energy, case_name, inputs, margin ? &target : nullptr)) return CriticalState{inputs, dofs};
   }
@@ -162,14 +177,15 @@ std::pair<bool, bool> signs_about(const Energy& energy, const std::string& case_
                                   const ExactInputs& inputs, bool dofs) {
   StateSampler sampler;
   std::pair<bool, bool> signs{false, false};
+  const auto [part, target] = alone(energy, {CriticalTarget::Kind::site, site, 0});
   for (int i = 0; i < 8; ++i) {
     ExactInputs moved = inputs;
     for (const Symbol& symbol : energy.symbols)
       for (Rational& x : moved.at(symbol.name))
         if ((symbol.role == Role::dof) == dofs) x = x + sampler.fraction(16, 16) / 1000000;
     DoubleAlgebra numbers(moved);
-    const auto traced = trace(energy, case_name, numbers, CriticalAlgebra<DoubleAlgebra>::Variables::none);
-    const auto* jet = quantity(traced, {CriticalTarget::Kind::site, site, 0});
+    const auto traced = trace(part, case_name, numbers, CriticalAlgebra<DoubleAlgebra>::Variables::none);
+    const auto* jet = quantity(traced, target);
     if (jet == nullptr) continue;
     signs.first = signs.first || jet->value > 0;
     signs.second = signs.second || jet->value < 0;

@@ -47,12 +47,14 @@ void collect(const std::vector<ClnNumber>& from, Side& side, int part) {
   }
 }
 
+using Variables = JetAlgebra<ClnAlgebra>::Variables;
+
 Side side_at(const Energy& energy, const std::string& case_name, const ExactInputs& inputs,
-             const CriticalTarget* boundary = nullptr) {
+             Variables variables = Variables::dofs, const CriticalTarget* boundary = nullptr) {
   Side side;
   if (!within_ranges(energy, inputs)) return side;
   ClnAlgebra numbers(inputs, digits_for_derivatives(energy, critical_digits));
-  JetAlgebra<ClnAlgebra> jets(energy, numbers);
+  JetAlgebra<ClnAlgebra> jets(energy, numbers, JetAlgebra<ClnAlgebra>::Order::second, variables);
   const Elaborated<Jet<ClnNumber>> result = elaborate(energy, case_name, jets);
   side.allowed = true;
   for (const auto* margins : {&result.active, &result.require}) {
@@ -139,15 +141,21 @@ Limit limit_at(const Energy& energy, const std::string& case_name, const ExactIn
   Limit worst;
   for (int i = 0; i < 2; ++i) {
     const std::vector<Rational> direction = random_direction(energy, dofs, sampler);
-    Side far[2], near[2];
-    ExactInputs states[2];
-    for (int s = 0; s < 2; ++s) {
-      const Rational sign(s == 0 ? -1 : 1);
-      states[s] = moved(energy, state, direction, dofs, sign * power_of_ten(-12));
-      far[s] = side_at(energy, case_name, states[s]);
-      near[s] = side_at(energy, case_name, moved(energy, state, direction, dofs, sign * power_of_ten(-26)));
+    Limit found;
+    // Values alone cost a tenth, and where they jump or grow nobody asks for more.
+    for (const Variables variables : {Variables::none, Variables::dofs}) {
+      Side far[2], near[2];
+      ExactInputs states[2];
+      for (int s = 0; s < 2; ++s) {
+        const Rational sign(s == 0 ? -1 : 1);
+        states[s] = moved(energy, state, direction, dofs, sign * power_of_ten(-12));
+        far[s] = side_at(energy, case_name, states[s], variables);
+        near[s] =
+            side_at(energy, case_name, moved(energy, state, direction, dofs, sign * power_of_ten(-26)), variables);
+      }
+      found = compare(far, near, states);
+      if (found.effect != Effect::none) break;
     }
-    Limit found = compare(far, near, states);
     if (found.effect > worst.effect) worst = std::move(found);
   }
   return worst;
@@ -162,10 +170,10 @@ Limit limit_at_boundary(const Energy& energy, const std::string& case_name, cons
     const std::vector<Rational> direction = random_direction(energy, true, sampler);
     const Rational sign(i % 2 == 0 ? 1 : -1);
     const ExactInputs nearby = moved(energy, state, direction, true, sign * power_of_ten(-12));
-    const Side far = side_at(energy, case_name, nearby, &boundary);
+    const Side far = side_at(energy, case_name, nearby, Variables::dofs, &boundary);
     if (!far.allowed || !(far.margin > 0)) continue;
-    const Side near =
-        side_at(energy, case_name, moved(energy, state, direction, true, sign * power_of_ten(-26)), &boundary);
+    const Side near = side_at(energy, case_name, moved(energy, state, direction, true, sign * power_of_ten(-26)),
+                              Variables::dofs, &boundary);
     if (!near.allowed || !near.defined || !far.defined) continue;
     if (!active) {
       const double value = near.parts[0][0];
