@@ -49,7 +49,7 @@ class Bytes {
   }
   void add(const Energy& energy) {
     const auto& [kind, name, geometry, summary, cite, symbols, lets, cases, active, require, updates, value, part_of,
-                 load, fixed_frame, text, file] = energy;
+                 constraint, load, fixed_frame, text, file] = energy;
     add(static_cast<int>(kind)), add(name), add(geometry), add(summary), add(cite), add(symbols), add(lets);
     add(cases), add(active), add(require), add(updates), add(value), add(part_of), add(int{fixed_frame}), add(text);
   }

@@ -289,6 +289,7 @@ void add_load(const Scene& scene, int potential, const std::string& param, std::
 TimeStepper stepper_of(BuiltScene& built) {
   TimeStepper stepper(*built.system, built.mass, built.contacts.get(), built.step, built.script);
   if (!built.loads.empty()) stepper.grow_loads(built.loads, static_cast<double>(built.steps) * built.step.dt);
+  if (!built.constraints.empty()) stepper.keep_constraints(built.constraints);
   return stepper;
 }
 

@@ -59,6 +59,7 @@ struct BuiltScene {
   long steps = 0;                    // of step.dt
   std::optional<StepLimits> limits;  // absent: all steps are of step.dt
   std::vector<Load> loads;           // that grow from 0 at the start to what they are at the end; none: none grows
+  std::vector<Constraint> constraints;
   std::vector<std::string> skipped;  // what was left out, "part: reason"
   // Faults of energies that the scene names by file, as check_energy tells them; those of the catalogue are checked by
   // its tests.

@@ -30,6 +30,24 @@ Key<EnergyUse> energy_text_key() {
   return key;
 }
 
+// In the unit of what the law draws to 0.
+Key<EnergyUse> constraint_key() {
+  Key<EnergyUse> key;
+  key.text = {
+      "constraint_tolerance",
+      "number or string",
+      "of c",
+      "(0, inf)",
+      "none",
+      "of a law with a `constraint c = ...`: every step ends with the length of c in all its stencils, or points of "
+      "quadrature, at most this, whatever the law's stiffness, or it fails; the law is augmented by multipliers, "
+      "and hardened where they converge slowly"};
+  key.read = [](const toml::node& node, const std::string& file, EnergyUse& use) {
+    use.constraint_tolerance = read_param(toml::key("constraint_tolerance", node.source()), node, file);
+  };
+  return key;
+}
+
 }  // namespace
 
 Section<EnergyUse> energy_section() {
@@ -54,6 +72,7 @@ Section<EnergyUse> energy_section() {
           "time by which the stiffness of this law at the start of each step is multiplied to resist velocities: "
           "Rayleigh damping by stiffness, of any law that has one. A vibration of angular frequency w has then "
           "the damping ratio mass_damping/(2*w) + stiffness_damping*w/2; steps without inertia have none"),
+      constraint_key(),
   };
   out.check = [](const std::string&, const T& use) {
     if (use.wrote("law") && use.wrote("text"))

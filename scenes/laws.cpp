@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "symbolic/augmented.h"
 #include "symbolic/varied.h"
 
 namespace ergon {
@@ -38,14 +39,25 @@ const Energy& Laws::get(const std::string& law, const Place& place) {
 }
 
 const Energy& Laws::get(const EnergyUse& use) {
-  const Energy& energy = read(use);
+  const Energy* energy = &read(use);
   const auto has_name = [](const auto& declared) { return declared.name == "weight"; };
-  if (!use.params.contains("weight") || energy.find("weight") != nullptr ||
-      std::any_of(energy.lets.begin(), energy.lets.end(), has_name))
-    return energy;
-  const std::pair key(&energy, std::vector<std::string>{"*"});
-  auto found = made_.find(key);
-  if (found == made_.end()) found = made_.emplace(key, weighted(energy)).first;
+  if (use.params.contains("weight") && energy->find("weight") == nullptr &&
+      std::none_of(energy->lets.begin(), energy->lets.end(), has_name))
+    energy = &make(*energy, "*", weighted);
+  if (!use.constraint_tolerance) return *energy;
+  if (energy->constraint.empty())
+    throw SourceError(
+        use.at("constraint_tolerance"),
+        fmt::format("{} has no constraint; a law says by `constraint c = EXPRESSION` what its value draws "
+                    "to 0",
+                    energy->name));
+  return make(*energy, "0", augmented);
+}
+
+const Energy& Laws::make(const Energy& energy, const std::string& key, Energy (*made_of)(const Energy&)) {
+  const std::pair full(&energy, std::vector<std::string>{key});
+  auto found = made_.find(full);
+  if (found == made_.end()) found = made_.emplace(full, made_of(energy)).first;
   return found->second;
 }
 
@@ -95,6 +107,14 @@ void check_range(const Energy& energy, const Symbol& param, double value, const 
                  const std::string& where) {
   if (!param.range.contains(value) || !std::isfinite(value))
     refuse_value(energy, param, fmt::format("{}{}{}", value, in_unit(param), where), place);
+}
+
+std::optional<double> constraint_tolerance(const Energy& energy, const EnergyUse& use) {
+  if (!use.constraint_tolerance) return std::nullopt;
+  const Let& constraint = *constraint_of(energy);
+  Symbol tolerance{"constraint_tolerance", Role::param, {}, constraint.expression->unit, {}, "", constraint.place};
+  tolerance.range.lower = 0;
+  return checked_values(energy, tolerance, *use.constraint_tolerance)[0];
 }
 
 Parameters checked_params(const Energy& energy, const EnergyUse& use, double thickness) {

@@ -9,6 +9,7 @@
 #include "runtime/error.h"
 #include "runtime/mesh/mesh_stencils.h"
 #include "runtime/mesh/rod_frames.h"
+#include "symbolic/augmented.h"
 
 namespace ergon {
 namespace {
@@ -185,8 +186,13 @@ std::vector<UsedLaw> object_laws(const SceneObject& object, Laws& laws) {
     const Energy& energy = laws.get(use);
     check_supported(energy, use.at("law"));
     check_damping(energy, use);
-    UsedLaw law{&energy, &energy, checked_params(energy, use, object.thickness), law_fields(energy, use, object),
-                {},      {}};
+    UsedLaw law{&energy,
+                &energy,
+                checked_params(energy, use, object.thickness),
+                law_fields(energy, use, object),
+                {},
+                {},
+                constraint_tolerance(energy, use)};
     std::vector<std::string> over_mesh;
     for (const LawField& field : law.fields)
       if (field.over_mesh()) over_mesh.push_back(field.param->name);
@@ -240,6 +246,8 @@ void add_object(const Scene& scene, const SceneObject& object, const std::vector
       const Energy& energy = *laws[i].energy;
       const int index = out.system->add(object_potential(laws[i], kernels.get(energy), out.bodies[body], out));
       if (object.energies[i].stiffness_damping > 0) out.system->damp(index, object.energies[i].stiffness_damping);
+      if (const std::optional<double> tolerance = laws[i].constraint_tolerance)
+        out.constraints.push_back({index, *tolerance, to_string(constraint_of(energy)->expression->unit)});
       const std::string& param = laws[i].declared->load;
       if (param.empty()) continue;
       const auto is_it = [&](const LawField& field) { return field.param->name == param; };

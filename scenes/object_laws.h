@@ -20,6 +20,7 @@ struct UsedLaw {
   // Set by place_fields: values of those over the mesh, and of those in time.
   StencilData rest;
   std::map<std::string, TimedValues> timed;
+  std::optional<double> constraint_tolerance{};
 };
 
 // Reads the laws and their params. Throws SourceError at the scene's line unless objects can carry them: densities, and

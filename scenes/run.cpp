@@ -76,6 +76,10 @@ ReportRecord report_of(const StepRecord& record, const BuiltScene& built, const 
               {"energy_added", record.energy_added}};
   if (built.limits) out.more.emplace_back("refused", record.refused);
   if (built.limits && std::isfinite(built.limits->tolerance)) out.more.emplace_back("error", record.error);
+  if (!built.constraints.empty()) {
+    out.more.emplace_back("constraint_iterations", record.constraint_iterations);
+    out.more.emplace_back("constraint_excess", record.constraint_excess);
+  }
   if (!built.loads.empty()) out.more.emplace_back("load_factor", record.load_factor);
   return out;
 }

@@ -63,6 +63,7 @@ struct EnergyUse : Located {
   std::string text;   // the energy itself, as an .energy file holds it
   int text_line = 0;  // of the scene file, where the text begins
   double stiffness_damping = 0;  // s
+  std::optional<ParamValue> constraint_tolerance;
   std::map<std::string, ParamValue> params;
 };
 

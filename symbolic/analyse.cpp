@@ -262,7 +262,10 @@ class Analysis {
     for (const Let& let : energy_.lets)
       if (!used_.contains(let.name))
         throw SourceError(let.place, fmt::format("the {} '{}' is not used",
-                                                 let.case_name.empty() ? "let" : "let of a case", let.name));
+                                                 let.name == energy_.constraint ? "constraint"
+                                                 : let.case_name.empty()        ? "let"
+                                                                                : "let of a case",
+                                                 let.name));
   }
 
   const Energy& energy_;

@@ -77,6 +77,7 @@ struct Energy {
   std::vector<Let> updates;
   ExpressionPtr value;       // null in a distance
   std::string part_of;       // `part TEXT`: the sum that it is sound in; "" for one that is sound alone
+  std::string constraint;    // `constraint NAME = EXPRESSION`: the let that the value draws to 0; "" without one
   std::string load;          // `load PARAM`: what the value is in proportion to; "" for one that is no load
   bool fixed_frame = false;  // `frame fixed`: the author states that it is not invariant under rotation
   std::string text;          // the file as read

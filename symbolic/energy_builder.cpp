@@ -41,6 +41,11 @@ Expr EnergyBuilder::case_let(const std::string& case_name, const std::string& na
   return Expr::named(name);
 }
 
+Expr EnergyBuilder::constraint(const std::string& name, const Operand& expression) {
+  add("constraint " + name + " = ", expression.where, &expression);
+  return Expr::named(name);
+}
+
 void EnergyBuilder::active(const Inequality& condition, Where where) {
   const Operand text(condition.text, where);
   add("active ", where, &text);

@@ -46,6 +46,8 @@ class EnergyBuilder {
   Expr let(const std::string& name, const Operand& expression);
   Expr case_let(const std::string& case_name, const std::string& name, const Operand& expression);
 
+  Expr constraint(const std::string& name, const Operand& expression);
+
   void active(const Inequality& condition, Where where = Where::current());
   void require(const Inequality& condition, Where where = Where::current());
   void update(const Operand& lag, const Operand& expression);

@@ -15,7 +15,7 @@ namespace {
 const std::vector<std::string> headers = {"density", "energy", "barrier", "distance"};
 const std::vector<std::string> keywords = {"density", "energy", "barrier", "distance", "cite",   "param",
                                            "lag",     "rest",   "dof",     "let",      "active", "require",
-                                           "frame",   "value",  "case",    "part",     "update"};
+                                           "frame",   "value",  "case",    "part",     "update", "constraint"};
 constexpr const char* any_header =
     "`density NAME GEOMETRY`, `energy NAME STENCIL`, `barrier NAME` or `distance NAME STENCIL`";
 
@@ -145,13 +145,14 @@ class EnergyParser {
     if (word == "load") return load(statement);
 
     if (word == "let" || word == "case" || word == "active" || word == "require" || word == "value" ||
-        word == "update") {
+        word == "update" || word == "constraint") {
       ExpressionParser parser(tokenise(statement, end));
       if (word == "let") let(parser);
       if (word == "case") case_let(parser);
       if (word == "active" || word == "require") condition(parser, word, place);
       if (word == "value") value(parser, place);
       if (word == "update") update(parser, place);
+      if (word == "constraint") constraint(parser, place);
       return;
     }
     const size_t blank = std::min(statement.text.find_first_of(" \t"), statement.text.size());
@@ -241,6 +242,19 @@ class EnergyParser {
     parser.take_sign("=", fmt::format("after '{}'", name.text).c_str());
     energy_.updates.push_back({name.text, "", parser.expression(), name.place});
     parser.finish();
+  }
+
+  void constraint(ExpressionParser& parser, const Place& place) {
+    if (!energy_.complete())
+      throw SourceError(place,
+                        "a barrier or distance keeps to no equation; `constraint` belongs to a density or a "
+                        "stencil energy");
+    if (!energy_.constraint.empty())
+      throw SourceError(place, fmt::format("a second constraint; '{}' has '{}' already: join them to one vector",
+                                           energy_.name, energy_.constraint));
+    const Token name = parser.take_name("the name of what the value draws to 0");
+    finish_let(parser, name, "");
+    energy_.constraint = name.text;
   }
 
   void finish_let(ExpressionParser& parser, const Token& name, const std::string& case_name) {

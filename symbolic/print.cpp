@@ -94,7 +94,8 @@ std::string to_text(const Expression& e) {
 std::string formula_text(const Energy& energy) {
   std::string text;
   for (const Let& let : energy.lets) {
-    text += let.case_name.empty() ? fmt::format("let {} = ", let.name)
+    const char* keyword = let.name == energy.constraint ? "constraint" : "let";
+    text += let.case_name.empty() ? fmt::format("{} {} = ", keyword, let.name)
                                   : fmt::format("case {} {} = ", let.case_name, let.name);
     text += to_text(*let.expression) + "\n";
   }

@@ -24,6 +24,7 @@ TimeStepper::TimeStepper(System& system, Eigen::VectorXd mass, Contact* contact,
   positive("tolerance", options_.tolerance, "m/s");
   integrator_named(options_.integrator);  // throws
   if (options_.max_iterations < 1) throw InputError("max_iterations must be at least 1");
+  if (options_.constraint_iterations < 1) throw InputError("constraint_iterations must be at least 1");
   if (options_.friction_lag_iterations < 1) throw InputError("friction_lag_iterations must be at least 1");
 }
 
@@ -154,11 +155,15 @@ bool TimeStepper::finish(const Integrator& integrator, std::vector<Moment>& mome
   const bool blocked = contact_ && contact_->largest_step(moments.back().x, way) < 1;
   if (contact_) contact_->set_active(blocked ? moments.back().x : end.x);
   if (!blocked) result.evaluation = system_->value(end.x);
-  if (blocked || !(result.evaluation.require > 0)) {
+  const Violation worst = constraints_.violation(*system_, end.x);
+  if (blocked || !(result.evaluation.require > 0) || worst.excess > 1) {
     result.converged = false;
     result.reason = fmt::format(
         "the integrator {} ends its step beyond its last stage, where {}; take one that does not, as sdirk2 or bdf2",
-        options_.integrator, blocked ? "surfaces collide" : "the state is outside the domain of an energy");
+        options_.integrator,
+        blocked            ? "surfaces collide"
+        : worst.excess > 1 ? constraints_.describe(*system_, worst)
+                           : "the state is outside the domain of an energy");
     return false;
   }
   moments.push_back(std::move(end));
@@ -204,6 +209,7 @@ void TimeStepper::set_internal(const State& state) {
         potential.set_lag(lag.name, state.internal.at(static_cast<size_t>(i)).at(lag.name));
     }
   }
+  constraints_.start(*system_, state.internal);
 }
 
 void TimeStepper::begin_contact(const Solve& stage, const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& v,
@@ -213,7 +219,7 @@ void TimeStepper::begin_contact(const Solve& stage, const Eigen::Matrix3Xd& x, c
   contact_->lag_friction(x, stage.xlag, stage.lag_dt);
 }
 
-// Newton, repeated with new normal forces of friction until these have settled.
+// Newton, repeated with new normal forces of friction until these have settled, and until constraints are kept.
 NewtonResult TimeStepper::solve(const Solve& stage, Eigen::Matrix3Xd& x, StepRecord& record) {
   NewtonOptions newton;
   newton.dt = stage.dt;
@@ -227,25 +233,50 @@ NewtonResult TimeStepper::solve(const Solve& stage, Eigen::Matrix3Xd& x, StepRec
     script_.place(stage.end, goal_);
     newton.prescribed = {&script_.vertices(), &goal_};
   }
-  const bool friction = contact_ && contact_->has_friction();
 
   NewtonResult result;
   int solves = 0;
-  while (true) {
+  bool again = true;
+  while (again) {
     result = newton_.minimise(*system_, x, newton, contact_);
     ++solves;
     add_solve(result, record);
+    if (contact_ && contact_->has_friction()) ++record.friction_iterations;
     take_balance(x);
     if (options_.record_forces && contact_) record.forces = forces(x);
-    if (!friction || !result.converged) break;
-
-    const Stopwatch watch(record.seconds.contact);
-    record.friction_change = contact_->lag_friction(x, stage.xlag, stage.lag_dt).fraction();
-    if (record.friction_change <= options_.friction_tolerance) break;
-    if (solves >= options_.friction_lag_iterations) break;
+    if (!result.converged) break;
+    const bool rubs = friction_changes(stage, x, solves, record);
+    const bool gives = constraints_give(x, solves, result, record);
+    again = result.converged && (rubs || gives);
   }
-  if (friction) record.friction_iterations += solves;
   return result;
+}
+
+bool TimeStepper::friction_changes(const Solve& stage, const Eigen::Matrix3Xd& x, int solves, StepRecord& record) {
+  if (!contact_ || !contact_->has_friction()) return false;
+  const Stopwatch watch(record.seconds.contact);
+  record.friction_change = contact_->lag_friction(x, stage.xlag, stage.lag_dt).fraction();
+  return record.friction_change > options_.friction_tolerance && solves < options_.friction_lag_iterations;
+}
+
+// Whether some constraint is beyond its tolerance: it is then tightened, unless it has been too often.
+bool TimeStepper::constraints_give(const Eigen::Matrix3Xd& x, int solves, NewtonResult& result, StepRecord& record) {
+  if (constraints_.empty()) return false;
+  const Violation worst = constraints_.violation(*system_, x);
+  record.constraint_excess = worst.excess;
+  if (worst.excess <= 1) return false;
+  if (solves >= options_.constraint_iterations) {
+    result.converged = false;
+    result.reason = constraints_.describe(*system_, worst) +
+                    fmt::format(
+                        ", after {} solves; see whether fixed points, contact or other constraints keep it "
+                        "from being met, or allow a larger tolerance",
+                        solves);
+    return false;
+  }
+  record.energy_added += constraints_.tighten(*system_, x);
+  ++record.constraint_iterations;
+  return true;
 }
 
 // Of contact on the vertices, before friction gets new normal forces: those that the solve balanced.
@@ -268,7 +299,9 @@ void TimeStepper::advance(State& state, const Moment& end) {
   for (int i = 0; i < system_->potential_count(); ++i) {
     if (!renews(i)) continue;
     state.internal.resize(static_cast<size_t>(system_->potential_count()));
-    state.internal[static_cast<size_t>(i)] = system_->potential(i).renewed(end.x);
+    StencilData& internal = state.internal[static_cast<size_t>(i)];
+    internal = system_->potential(i).renewed(end.x);
+    constraints_.keep(i, internal);
   }
   state.last_x = std::move(state.x);
   state.last_v = std::move(state.v);

@@ -13,6 +13,8 @@
 // Damping in proportion to stiffness (System::damp) takes the stiffness at the start of the step, for all its stages,
 // and the velocity at the end of the stage. Steps without inertia have none.
 //
+// Constraints that are to keep a tolerance (runtime/solver/constraints.h) are solved for again until they do.
+//
 // A density has the lag `Flag` in place of positions: its F there. Lags that an energy renews itself are part of the
 // state; they change once a step is accepted, by what the energy sees at its end with the lags of the last stage.
 
@@ -25,6 +27,7 @@
 
 #include "runtime/contact/contact.h"
 #include "runtime/script.h"
+#include "runtime/solver/constraints.h"
 #include "runtime/solver/integrator.h"
 #include "runtime/solver/newton.h"
 #include "runtime/system.h"
@@ -49,6 +52,7 @@ struct StepOptions {
   std::string integrator = "implicit_euler";
   double tolerance = 1e-4;          // m/s, of a Newton step over dt
   int max_iterations = 200;         // of each Newton solve
+  int constraint_iterations = 40;   // solves of each stage, until constraints keep their tolerances
   int friction_lag_iterations = 2;  // solves per step, each with the normal forces of the one before
   double friction_tolerance =
       0.05;  // no further solve when normal forces changed by less than this fraction of their sum
@@ -80,7 +84,7 @@ struct Budget {
   double change = 0;
   double script = 0;      // work of what holds and moves scripted vertices
   double loads = 0;       // by loads that grow
-  double barrier = 0;     // by changes of barrier stiffness
+  double barrier = 0;     // by changes of barrier stiffness, and of constraints that are shifted and hardened
   double friction = 0;    // dissipated
   double damping = 0;     // dissipated by potentials with the lag dt, and in proportion to stiffness
   double integrator = 0;  // dissipated by the way in which time is cut into steps
@@ -120,7 +124,9 @@ struct StepRecord {
   int contacts = 0;                                               // pairs within dhat
   double smallest_gap = std::numeric_limits<double>::infinity();  // m
   double barrier_stiffness = 0;                                   // largest
-  double energy_added = 0;                                        // J, by changes of barrier stiffness
+  double energy_added = 0;                                        // J, by changes as those of Budget::barrier
+  int constraint_iterations = 0;                                  // solves for the sake of constraints alone
+  double constraint_excess = 0;                                   // largest |c| over its tolerance
   double error = 0;                                               // m, where it is estimated: of the step, any vertex
   Budget budget;                                                  // of a step that was accepted
   Momentum momentum;
@@ -144,6 +150,9 @@ class TimeStepper {
   // Loads grow in proportion to time, from 0 to `full` at `end` (s), and then stay.
   void grow_loads(std::vector<Load> loads, double end);
   double load_factor(double time) const;
+
+  // Every step ends with these within their tolerances, or fails. Throws InputError as Constraints does.
+  void keep_constraints(std::vector<Constraint> constraints) { constraints_ = {*system_, std::move(constraints)}; }
 
   // Of a state, not only of one that was stepped to.
   Energies energies(const State& state);
@@ -176,6 +185,8 @@ class TimeStepper {
   void judge_path(const State& state, const Eigen::Matrix3Xd& x, bool was_stable, NewtonResult& result);
   Eigen::Matrix3Xd free_acceleration(const State& state);
   void set_lags(const Solve& stage);
+  bool friction_changes(const Solve& stage, const Eigen::Matrix3Xd& x, int solves, StepRecord& record);
+  bool constraints_give(const Eigen::Matrix3Xd& x, int solves, NewtonResult& result, StepRecord& record);
   void lag_stiffness(const State& state);
   void set_internal(const State& state);
   void begin_contact(const Solve& stage, const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& v, StepRecord& record);
@@ -205,6 +216,7 @@ class TimeStepper {
     PotentialValues energy;
   };
   Known known_;
+  Constraints constraints_;
   std::vector<Load> loads_;
   double load_end_ = 0;                            // s; 0: loads do not change
   std::optional<std::pair<double, bool>> stable_;  // time of the state that stability was last found for, and it

@@ -28,6 +28,22 @@ TEST_F(Examples, ASolverOfOnesOwnConverges) {
   EXPECT_THAT(answer.out, HasSubstr("the free end hangs 0."));
 }
 
+// The corners of the net bear what its knots weigh: 20 N, and 0.1 N each of the 76 others that are free.
+TEST_F(Examples, ANetOverOnesOwnArraysComesToRest) {
+  const Answer answer = example("own_arrays");
+  EXPECT_EQ(answer.code, 0) << answer.out << answer.err;
+  EXPECT_THAT(answer.out, testing::StartsWith("144 threads at rest after "));
+  EXPECT_THAT(answer.out, HasSubstr("the corners bear 27.6 N of 27.6 N"));
+}
+
+// Cells are springs in a row, which is exact.
+TEST_F(Examples, AModulusThatVariesIsTakenFromMemory) {
+  const Answer answer = example("graded_material");
+  EXPECT_EQ(answer.code, 0) << answer.out << answer.err;
+  EXPECT_THAT(answer.out, HasSubstr("data of cells:    0.0039064925 m, a row of springs gives 0.0039064925 m"));
+  EXPECT_THAT(answer.out, HasSubstr("data of vertices: 0.0039"));
+}
+
 TEST_F(SlowExamples, ASurfaceIsLaidOutFlat) {
   const Answer answer = example("surface_parametrisation '" + test::source("/scenes/meshes/bunny.obj") + "' flat.obj");
   EXPECT_EQ(answer.code, 0) << answer.out << answer.err;
