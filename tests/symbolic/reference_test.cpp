@@ -185,7 +185,7 @@ Inputs random_inputs(const Energy& energy, std::mt19937& engine) {
     const double high = std::isfinite(symbol.range.upper) ? symbol.range.upper : low + 2;
     for (int i = 0; i < symbol.shape.size(); ++i) inputs[symbol.name].push_back(low + (high - low) * unit(engine));
     if (symbol.name == "F")
-      for (int i = 0; i < 9; i += 4) inputs["F"][static_cast<size_t>(i)] += 2;
+      for (int i = 0; i < symbol.shape.size(); i += 4) inputs["F"][static_cast<size_t>(i)] += 2;
   }
   return inputs;
 }

