@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <cmath>
 
 #include "tests/scenes/finish_scene.h"
@@ -50,6 +51,34 @@ TEST(SceneConstraints, AreKeptHoweverSoftTheirLaw) {
   const FinishedScene loose = finish_text(rope(""));
   ASSERT_EQ(loose.summary.failure, "");
   EXPECT_GT(worst_length(loose), 0.01);
+}
+
+// Every tetrahedron of a block that hangs from its top keeps its volume, by a law that is far too soft for it.
+TEST(SceneConstraints, KeepTheVolumesOfCellsTogetherWithASolid) {
+  const FinishedScene block = finish_text(R"(
+[time]
+dt = 0.01
+steps = 6
+[[object]]
+name = "block"
+element = "tet4"
+box = { size = [0.1, 0.2, 0.1], cells = [2, 4, 2] }
+density = 1000
+fixed = [{ min = [-inf, 0.099, -inf] }]
+energy = [{ law = "neo_hookean", E = 1e4, nu = 0.2 },
+          { law = "volume_constraint", k = 1e6, constraint_tolerance = "0.1 mm^3" }]
+)");
+  ASSERT_EQ(block.summary.failure, "");
+  const Mesh& mesh = block.built.bodies[0].ordered;
+  const auto volume = [&](const Eigen::Matrix3Xd& x, int cell) {
+    const int* v = &mesh.cells[static_cast<size_t>(4 * cell)];
+    Eigen::Matrix3d edges;
+    for (int i = 0; i < 3; ++i) edges.col(i) = x.col(v[i + 1]) - x.col(v[0]);
+    return edges.determinant() / 6;
+  };
+  for (int i = 0; i < mesh.cell_count(); ++i)
+    EXPECT_LE(std::fabs(volume(block.end.x, i) - volume(block.built.start.x, i)), 1.0001e-10);
+  EXPECT_GT((block.end.x - block.built.start.x).cwiseAbs().maxCoeff(), 1e-3);
 }
 
 }  // namespace
