@@ -8,7 +8,7 @@
 namespace ergon {
 
 EnergyBuilder::EnergyBuilder(const std::string& kind, const std::string& name, const std::string& geometry, Where where)
-    : file_(where.file_name()) {
+    : file_(where.file) {
   add(kind + " " + name + (geometry.empty() ? "" : " " + geometry), where);
 }
 

@@ -21,11 +21,11 @@ namespace ergon {
 
 class EnergyBuilder {
  public:
-  using Where = std::source_location;
+  using Where = SourceLine;
 
   // `kind` as headers begin: "density", "energy", "barrier" (without geometry) or "distance".
   EnergyBuilder(const std::string& kind, const std::string& name, const std::string& geometry = "",
-                Where where = Where::current());
+                Where where = Where::here());
 
   // What headers declare: F of a density, gap and gap2 of a barrier.
   Expr F() const { return Expr::named("F"); }
@@ -34,13 +34,13 @@ class EnergyBuilder {
 
   // Declarations; what they give is the name. Name, unit and range are written as in a file: "A[3, 3]", "N/m",
   // "(0, inf)", "" for any.
-  Expr dof(const std::string& name, const std::string& unit, Where where = Where::current());
+  Expr dof(const std::string& name, const std::string& unit, Where where = Where::here());
   Expr param(const std::string& name, const std::string& unit, const std::string& range = "",
-             const std::string& help = "", Where where = Where::current());
+             const std::string& help = "", Where where = Where::here());
   Expr rest(const std::string& name, const std::string& unit, const std::string& range = "",
-            const std::string& help = "", Where where = Where::current());
+            const std::string& help = "", Where where = Where::here());
   Expr lag(const std::string& name, const std::string& unit, const std::string& range = "",
-           const std::string& help = "", Where where = Where::current());
+           const std::string& help = "", Where where = Where::here());
 
   // Parts with a name; what they give is the name.
   Expr let(const std::string& name, const Operand& expression);
@@ -48,16 +48,16 @@ class EnergyBuilder {
 
   Expr constraint(const std::string& name, const Operand& expression);
 
-  void active(const Inequality& condition, Where where = Where::current());
-  void require(const Inequality& condition, Where where = Where::current());
+  void active(const Inequality& condition, Where where = Where::here());
+  void require(const Inequality& condition, Where where = Where::here());
   void update(const Operand& lag, const Operand& expression);
   void value(const Operand& expression);
 
-  void summary(const std::string& text, Where where = Where::current());
-  void cite(const std::string& text, Where where = Where::current());
-  void part(const std::string& text, Where where = Where::current());
+  void summary(const std::string& text, Where where = Where::here());
+  void cite(const std::string& text, Where where = Where::here());
+  void part(const std::string& text, Where where = Where::here());
   void load(const Operand& param);
-  void fixed_frame(Where where = Where::current());
+  void fixed_frame(Where where = Where::here());
 
   // Throws SourceError at the line of the statement, or of the operation in it, that is at fault.
   Energy build() const;

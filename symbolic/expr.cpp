@@ -6,7 +6,7 @@
 
 namespace ergon {
 
-Place place_of(const std::source_location& where) { return {where.file_name(), static_cast<int>(where.line()), 0}; }
+Place place_of(const SourceLine& where) { return {where.file, where.line, 0}; }
 
 // A text that is put together.
 class Text {
@@ -14,7 +14,7 @@ class Text {
   using Level = Expr::Level;
 
   // What follows is written at `where`.
-  Text& add(const std::string& words, const std::source_location& where) {
+  Text& add(const std::string& words, const SourceLine& where) {
     written_.emplace_back(text_.size(), place_of(where));
     text_ += words;
     return *this;
@@ -109,15 +109,15 @@ Inequality operator>(const Operand& a, const Operand& b) {
   return {binary(a, Level::sum, " > ", b, Level::sum).as(Level::sum)};
 }
 
-Expr call(const std::string& function, std::initializer_list<Operand> arguments, std::source_location where) {
+Expr call(const std::string& function, std::initializer_list<Operand> arguments, SourceLine where) {
   return Text().add(function + "(", where).list(arguments).add(")", where).as(Level::atom);
 }
 
-Expr vector(std::initializer_list<Operand> components, std::source_location where) {
+Expr vector(std::initializer_list<Operand> components, SourceLine where) {
   return Text().add("[", where).list(components).add("]", where).as(Level::atom);
 }
 
-Expr matrix(std::initializer_list<std::initializer_list<Operand>> rows, std::source_location where) {
+Expr matrix(std::initializer_list<std::initializer_list<Operand>> rows, SourceLine where) {
   Text text;
   text.add("[", where);
   bool first = true;

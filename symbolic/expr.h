@@ -8,7 +8,6 @@
 
 #include <concepts>
 #include <initializer_list>
-#include <source_location>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,17 +19,27 @@ namespace ergon {
 template <class T>
 concept Number = (std::integral<T> && !std::same_as<T, bool>) || std::floating_point<T>;
 
+// A line of C++; as a default argument that of the call. (std::source_location is not known to every Clang that reads
+// the headers of GCC.)
+struct SourceLine {
+  const char* file;
+  int line;
+  static constexpr SourceLine here(const char* file = __builtin_FILE(), int line = __builtin_LINE()) {
+    return {file, line};
+  }
+};
+
 // Where each part of a text starts, and the line of C++ it was written in.
 using Written = std::vector<std::pair<size_t, Place>>;
 
-Place place_of(const std::source_location& where);
+Place place_of(const SourceLine& where);
 
 class Expr {
  public:
-  using Where = std::source_location;
+  using Where = SourceLine;
   // Throws SourceError where the number is not finite.
   template <Number T>
-  Expr(T number, Where where = Where::current()) : Expr(of(number, where)) {}
+  Expr(T number, Where where = Where::here()) : Expr(of(number, where)) {}
 
   // A component, counted from 0: of a vector, of a matrix.
   Expr operator[](int row) const;
@@ -65,11 +74,11 @@ class Expr {
 
 // An expression or number, and the line of the operation that takes it: what is converted implicitly knows it.
 struct Operand {
-  Operand(Expr e, std::source_location at = std::source_location::current()) : expr(std::move(e)), where(at) {}
+  Operand(Expr e, SourceLine at = SourceLine::here()) : expr(std::move(e)), where(at) {}
   template <Number T>
-  Operand(T number, std::source_location at = std::source_location::current()) : expr(number, at), where(at) {}
+  Operand(T number, SourceLine at = SourceLine::here()) : expr(number, at), where(at) {}
   Expr expr;
-  std::source_location where;
+  SourceLine where;
 };
 
 Expr operator+(const Operand& a, const Operand& b);
@@ -87,12 +96,12 @@ Inequality operator<(const Operand& a, const Operand& b);
 Inequality operator>(const Operand& a, const Operand& b);
 
 // [a, b, c] and [a, b; c, d]
-Expr vector(std::initializer_list<Operand> components, Expr::Where where = Expr::Where::current());
-Expr matrix(std::initializer_list<std::initializer_list<Operand>> rows, Expr::Where where = Expr::Where::current());
+Expr vector(std::initializer_list<Operand> components, Expr::Where where = Expr::Where::here());
+Expr matrix(std::initializer_list<std::initializer_list<Operand>> rows, Expr::Where where = Expr::Where::here());
 
 // Any function of the language by its name, and each as a function of C++.
 Expr call(const std::string& function, std::initializer_list<Operand> arguments,
-          Expr::Where where = Expr::Where::current());
+          Expr::Where where = Expr::Where::here());
 
 inline Expr tr(const Operand& a) { return call("tr", {a}, a.where); }
 inline Expr det(const Operand& a) { return call("det", {a}, a.where); }
@@ -121,7 +130,7 @@ inline Expr atan2(const Operand& a, const Operand& b) { return call("atan2", {a,
 inline Expr min(const Operand& a, const Operand& b) { return call("min", {a, b}, a.where); }
 inline Expr max(const Operand& a, const Operand& b) { return call("max", {a, b}, a.where); }
 Expr transpose(const Operand& a);  // `'`
-inline Expr columns(std::initializer_list<Operand> vectors, Expr::Where where = Expr::Where::current()) {
+inline Expr columns(std::initializer_list<Operand> vectors, Expr::Where where = Expr::Where::here()) {
   return call("columns", vectors, where);
 }
 inline Expr column(const Operand& matrix, const Operand& number) {
