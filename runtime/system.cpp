@@ -177,14 +177,14 @@ Evaluation System::value(const Eigen::Matrix3Xd& x) {
     }
   }
   Evaluation evaluation = d.sum(true);
-  evaluation.value += damping(x, nullptr);
+  evaluation.value += damping(x, nullptr) + coupled_inertia(x, nullptr);
   return evaluation;
 }
 
 Evaluation System::gradient(const Eigen::Matrix3Xd& x, Eigen::Matrix3Xd& gradient) {
   impl->sum_gradients(x, gradient, [](size_t) { return true; });
   Evaluation evaluation = impl->sum(false);
-  evaluation.value += damping(x, &gradient);
+  evaluation.value += damping(x, &gradient) + coupled_inertia(x, &gradient);
   guide(gradient);
   return evaluation;
 }
@@ -254,7 +254,7 @@ Evaluation System::hessian(const Eigen::Matrix3Xd& x, Projection projection, Eig
   }
   d.numbers.carriers.collect(gradient);
   Evaluation evaluation = d.sum(false, true);
-  evaluation.value += damping(x, &gradient);
+  evaluation.value += damping(x, &gradient) + coupled_inertia(x, &gradient);
   d.damp_matrix(matrix);
   guide(gradient);
   d.guide_matrix(matrix);
@@ -266,6 +266,7 @@ Evaluation System::hessian(const Eigen::Matrix3Xd& x, Projection projection, Eig
 
 std::vector<std::string> System::skipped() const {
   std::vector<std::string> lines;
+  if (!coupled_mass().empty()) lines.emplace_back("consistent mass: Hessian is constant, assembled once");
   for (const SystemTerm& term : impl->terms) {
     if (!term.gives_gradient) continue;
     const std::string& name = term.potential.name();

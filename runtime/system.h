@@ -9,6 +9,7 @@
 
 #include "runtime/block_matrix.h"
 #include "runtime/carriers.h"
+#include "runtime/coupled_mass.h"
 #include "runtime/potential.h"
 #include "runtime/potential_values.h"
 
@@ -82,6 +83,17 @@ class System {
   void add_damping(const Eigen::Matrix3Xd& v, Eigen::Matrix3Xd& gradient) const;
   Eigen::Matrix3Xd lagged_velocity(const Eigen::Matrix3Xd& x) const;  // (x - from)/dt, m/s
 
+  // Inertia of vertices whose mass is coupled, which no potential gives then: with xhat and dt, xlag and lag_dt those
+  // of the last lag_coupled_mass(), value(), gradient() and hessian() have
+  //   sum_ij mass_ij/(2*dt^2) (x_i - xhat_i).(x_j - xhat_j) + sum_ij drag_ij/(2*lag_dt) (x_i - xlag_i).(x_j - xlag_j)
+  // in addition. It is in no entry of by_potential, nor in gradient_of(). Its Hessian is constant. Throws InputError
+  // for matrices that are not of the system's vertices.
+  void set_coupled_mass(CoupledMass mass);
+  const CoupledMass& coupled_mass() const;
+  void lag_coupled_mass(const Eigen::Matrix3Xd& xhat, double dt, const Eigen::Matrix3Xd& xlag, double lag_dt);  // m, s
+  // Adds sum_j drag_ij (x_j - xlag_j)/lag_dt (N).
+  void add_coupled_drag(const Eigen::Matrix3Xd& x, Eigen::Matrix3Xd& gradient) const;
+
   // N/m, mean over the axes: what resists the motion of this vertex alone, the others or, where it is carried, the
   // other bodies being held. 0 for a fixed one. `matrix`: of the last hessian().
   double stiffness_at(int vertex, const BlockMatrix& matrix) const;
@@ -93,8 +105,9 @@ class System {
   std::shared_ptr<Impl> impl;
 
  private:
-  // What damping adds to the energy (J), and to the gradient unless it is null.
+  // What damping adds to the energy (J), and to the gradient unless it is null; and coupled mass.
   double damping(const Eigen::Matrix3Xd& x, Eigen::Matrix3Xd* gradient) const;
+  double coupled_inertia(const Eigen::Matrix3Xd& x, Eigen::Matrix3Xd* gradient) const;
 };
 
 }  // namespace ergon

@@ -46,6 +46,7 @@ void System::Impl::update_base(Projection projection) {
     if (term.constant() && !term.kernel().psd_hessian && projection != base_projection) changed = true;
     if (term.constant() && term.constant_changed()) changed = true;
   }
+  changed = coupled.rescaled() || changed;
   if (!changed) return;
   base_known = true;
   base_projection = projection;
@@ -59,6 +60,7 @@ void System::Impl::update_base(Projection projection) {
       term.indefinite += result.indefinite;
     }
   }
+  coupled.assemble(base);
 }
 
 void System::Impl::start_matrix(BlockMatrix& matrix) const {

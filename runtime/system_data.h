@@ -179,6 +179,28 @@ struct StiffnessDamping {
   void find(const System::Impl& whole);
 };
 
+// Coupled mass with its lags, and where its entries go in the matrix.
+struct CoupledInertia {
+  struct Block {
+    ptrdiff_t at = 0;
+    int stride = 0;
+    double mass = 0, drag = 0;  // kg, kg/s
+  };
+
+  CoupledMass of;
+  Eigen::Matrix3Xd xhat, xlag;  // m
+  double dt = 0, lag_dt = 0;    // s; 0: not lagged
+  std::vector<Block> blocks = {};
+  unsigned long numbered_fixed = 0;       // that the pattern is of
+  double based_dt = 0, based_lag_dt = 0;  // that the assembled base is made of
+
+  bool renumbered(unsigned long fixed_version);
+  void add_blocks(const SystemNumbers& numbers, PatternBuilder& builder) const;
+  void find(const SystemNumbers& numbers, const BlockPattern& pattern);
+  bool rescaled();
+  void assemble(BlockMatrix& base) const;
+};
+
 struct System::Impl {
   int vertices = 0;
   std::vector<char> fixed;
@@ -210,6 +232,8 @@ struct System::Impl {
   std::vector<char> used;           // per block: in the base or in some chunk
   std::vector<int> cleared_column;  // block columns and numbers of the cleared blocks
   std::vector<int> cleared_index;
+
+  CoupledInertia coupled;
 
   std::vector<StiffnessDamping> damping;
   Eigen::Matrix3Xd damped_from;  // m

@@ -87,6 +87,7 @@ void System::Impl::update_base_pattern() {
       for (size_t k = 0; k < part.row.size(); ++k) builder.add(part.row[k], part.column[k]);
     }
   }
+  coupled.add_blocks(numbers, builder);
   base_pattern = std::make_shared<BlockPattern>();
   builder.build(numbers.free, nullptr, {}, *base_pattern);
   base.set_pattern(base_pattern);
@@ -97,10 +98,11 @@ void System::Impl::update_base_pattern() {
   for (SystemTerm& term : terms) {
     if (term.constant()) term.find(*base_pattern);
   }
+  coupled.find(numbers, *base_pattern);
 }
 
 void System::Impl::update_pattern() {
-  bool base_changed = false, changed = false;
+  bool base_changed = coupled.renumbered(fixed_version), changed = false;
   for (SystemTerm& term : terms) {
     if (!term.in_matrix() || !term.number(rooms, numbers, fixed_version)) continue;
     (term.constant() ? base_changed : changed) = true;

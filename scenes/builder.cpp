@@ -13,6 +13,7 @@
 #include "runtime/solver/stopwatch.h"
 #include "scenes/build_affine.h"
 #include "scenes/build_contact.h"
+#include "scenes/build_mass.h"
 #include "scenes/build_twist.h"
 #include "scenes/held_check.h"
 #include "scenes/laws.h"
@@ -81,20 +82,6 @@ std::vector<std::string> law_warnings(const Scene& scene, const std::vector<std:
   return out;
 }
 
-// Vertices that have mass: not those of obstacles, nor those that affine bodies carry or that hold one in its place.
-std::vector<int> heavy_points(const Eigen::VectorXd& mass) {
-  std::vector<int> out;
-  for (int v = 0; v < mass.size(); ++v)
-    if (mass[v] > 0) out.push_back(v);
-  return out;
-}
-
-std::vector<double> masses_of(const Eigen::VectorXd& mass, const std::vector<int>& points) {
-  std::vector<double> out;
-  for (const int v : points) out.push_back(mass[v]);
-  return out;
-}
-
 void add_loads(const Scene& scene, const Kernel& kernel, BuiltScene& out) {
   for (size_t i = 0; i < scene.objects.size(); ++i)
     for (size_t k = 0; k < scene.objects[i].loads.size(); ++k) {
@@ -114,37 +101,10 @@ void add_loads(const Scene& scene, const Kernel& kernel, BuiltScene& out) {
     }
 }
 
-// Of objects that have it, with their twists, and of the control points of affine ones.
-void add_mass_damping(const Scene& scene, const Kernel& kernel, BuiltScene& out) {
-  for (size_t i = 0; i < scene.objects.size(); ++i) {
-    if (scene.objects[i].mass_damping == 0) continue;
-    const Body& body = out.bodies[i];
-    const int first = body.affine() ? body.first_control : body.first_vertex;
-    std::vector<int> points(body.affine() ? 4 : static_cast<size_t>(body.ordered.vertices()));
-    std::iota(points.begin(), points.end(), first);
-    for (int cell = 0; body.twists() && cell < body.ordered.cell_count(); ++cell)
-      points.push_back(body.first_twist + cell);
-    std::erase_if(points, [&](int v) { return out.mass[v] == 0; });
-    out.system->add(Potential::on_stencils("drag", kernel, points, out.start.x,
-                                           {{"rate", {scene.objects[i].mass_damping}}},
-                                           {{"mass", masses_of(out.mass, points)}}));
-  }
-}
-
 void add_world(const Scene& scene, const WorldLaws& world, const UsedKernels& kernels, BuiltScene& out) {
-  const Eigen::Matrix3Xd& X = out.start.x;
-  const std::vector<int> points = heavy_points(out.mass);
   if (world.orthogonality != nullptr) add_affine_potentials(scene, kernels.get(*world.orthogonality), out);
-  if (world.inertia != nullptr)
-    out.system->add(Potential::on_stencils("inertia", kernels.get(*world.inertia), points, X, {},
-                                           {{"mass", masses_of(out.mass, points)}}));
-  if (world.gravity != nullptr) {
-    const std::vector<int> heavy = heavy_points(out.mass_of_points());
-    const int index = out.system->add(Potential::on_stencils("gravity", kernels.get(*world.gravity), heavy, X,
-                                                             {{"g", {scene.gravity.begin(), scene.gravity.end()}}},
-                                                             {{"mass", masses_of(out.mass, heavy)}}));
-    add_load(scene, index, "g", {scene.gravity.begin(), scene.gravity.end()}, out);
-  }
+  if (world.inertia != nullptr) add_inertia(kernels.get(*world.inertia), out);
+  if (world.gravity != nullptr) add_gravity(scene, kernels.get(*world.gravity), out);
   if (world.load != nullptr) add_loads(scene, kernels.get(*world.load), out);
   if (world.drag != nullptr) add_mass_damping(scene, kernels.get(*world.drag), out);
   add_contact(scene, world.contact, kernels, out);
@@ -260,6 +220,8 @@ void lay_out(const Scene& scene, BuiltScene& out) {
   out.system->set_guides(std::move(guides));
   add_start_noise(scene.start, out.bodies, scene.objects.size(), *out.system, out.start.x, out.start.v);
   out.system->guide(out.start.v);
+  out.coupled_mass = coupled_mass_of(scene, out.bodies, vertices);
+  if (!scene.time.quasi_static()) out.system->set_coupled_mass(out.coupled_mass);
 }
 
 std::vector<Probe> probes_of(const Scene& scene, const BuiltScene& built) {
@@ -279,6 +241,13 @@ std::vector<Probe> probes_of(const Scene& scene, const BuiltScene& built) {
 Eigen::VectorXd BuiltScene::mass_of_points() const {
   Eigen::VectorXd out = mass;
   out.tail(mass.size() - points).setZero();
+  return out;
+}
+
+Eigen::VectorXd BuiltScene::mass_shares() const {
+  Eigen::VectorXd out = mass_of_points();
+  for (int v = 0; !coupled_mass.empty() && v < points; ++v)
+    if (coupled_mass.couples(v)) out[v] = coupled_mass.mass.row(v).sum();
   return out;
 }
 

@@ -51,8 +51,9 @@ struct BuiltScene {
   GroundContact* ground = nullptr;     // part of contacts; null without grounds
   SurfaceContact* surfaces = nullptr;  // part of contacts; null without [contact]
   Script script;
-  Eigen::VectorXd mass;  // kg, per vertex
-  int points = 0;        // vertices that are points of space; those behind are twists of edges
+  Eigen::VectorXd mass;      // kg, per vertex; lumped, and a scale only where it is coupled
+  CoupledMass coupled_mass;  // of bodies whose mass is consistent
+  int points = 0;            // vertices that are points of space; those behind are twists of edges
   State start;
   std::vector<Probe> probes;
   StepOptions step;
@@ -68,6 +69,8 @@ struct BuiltScene {
 
   // kg: without what resists twist.
   Eigen::VectorXd mass_of_points() const;
+  // kg: the same as shares of momentum and weight, some of them negative where mass is coupled.
+  Eigen::VectorXd mass_shares() const;
 };
 
 // Given a mesh of what intersects at the start, before the error that says so.

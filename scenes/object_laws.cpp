@@ -136,15 +136,15 @@ std::vector<int> places_of(const Energy& energy, const std::vector<int>& stencil
   return out;
 }
 
-// The stencils are numbered as in the body's mesh.
+// The stencils are numbered as in the body's mesh. `mass`: kg, of the vertices of the scene.
 StencilData rest_data(const Energy& energy, const std::vector<int>& stencils, const Body& body,
-                      const BuiltScene& built) {
+                      const Eigen::VectorXd& mass) {
   StencilData out;
   const std::vector<RestSize> sizes = rest_sizes(energy.geometry);
   if (energy.geometry == "rod_corner") out = rod_data(energy, stencils, body);
   for (const Symbol* rest : energy.with_role(Role::rest)) {
     if (is_mass(energy, *rest))
-      for (const int vertex : stencils) out["mass"].push_back(built.mass[body.first_vertex + vertex]);
+      for (const int vertex : stencils) out["mass"].push_back(mass[body.first_vertex + vertex]);
     for (const RestSize& size : sizes)
       if (is_size(size, *rest)) out[size.name] = rest_size_of(size, energy.geometry, stencils, body.ordered);
   }
@@ -158,7 +158,8 @@ Potential object_potential(const UsedLaw& law, const Kernel& kernel, const Body&
       return Potential::on_mesh(energy.name, kernel, body.ordered, body.first_vertex, law.params, body.quadrature,
                                 law.rest);
     std::vector<int> stencils = stencils_on_mesh(energy.geometry, body.ordered);
-    StencilData rest = rest_data(energy, stencils, body, built);
+    // Weights are in proportion to shares of mass, also to negative ones; what is curved needs masses above 0.
+    StencilData rest = rest_data(energy, stencils, body, kernel->zero_hessian ? built.mass_shares() : built.mass);
     for (int& vertex : stencils) vertex = body.in_scene(vertex);
     rest.insert(law.rest.begin(), law.rest.end());
     return Potential::on_stencils(energy.name, kernel, stencils, built.start.x, law.params, rest);

@@ -178,6 +178,7 @@ struct SceneObject : SceneShape {
   std::optional<double> gyration;  // m, of a rod's cross-section; absent: of a disc
   double volume = 0;               // m^3, of a loose point
   Vector3 velocity = {0, 0, 0};    // m/s
+  std::string mass = "automatic";  // lumped, consistent, or what suits the element
   double mass_damping = 0;         // 1/s
   std::vector<EnergyUse> energies;
   std::vector<SceneRegion> regions;

@@ -205,6 +205,7 @@ void check_affine(const SceneObject& object) {
        {std::pair("energy", "of its shape it knows 'stiffness' alone"),
         std::pair("element", "its shape is the surface alone"), std::pair("max_edge", "its shape is the surface alone"),
         std::pair("quadrature", "its mass is that within the surface, exactly"),
+        std::pair("mass", "its mass is that within the surface, exactly"),
         std::pair("thickness", "it is the solid within its surface"),
         std::pair("cross_section", "it is the solid within its surface")})
     if (object.wrote(key))
@@ -230,6 +231,8 @@ void check_object(const std::string&, const SceneObject& object) {
     throw SourceError(object.at("max_edge"),
                       "'max_edge' has no use here: it is for surface meshes (.obj, .stl, .ply), which are filled with "
                       "tetrahedra");
+  if (object.wrote("mass") && object.wrote("points"))
+    throw SourceError(object.at("mass"), "'mass' has no use here: loose points have each its own");
   if (!object.wrote("element")) return;
   const auto refuse = [&](const char* why) { throw SourceError(object.at("element"), why); };
   if (filled && object.element != "tet4" && object.element != "tet10")
@@ -274,6 +277,10 @@ Section<SceneObject> object_section() {
       number_key("volume", &T::volume, "m^3", positive, Need::optional, "of each loose point, for its mass",
                  "required for loose points"),
       vector_key("velocity", &T::velocity, "m/s", any, Need::optional, "velocity at the start"),
+      choice_key("mass", &T::mass, {"automatic", "lumped", "consistent"},
+                 "lumped: every vertex has mass of its own; consistent: the matrix of the element's shape functions, "
+                 "which keeps moments of inertia; automatic: consistent for tri6, tet10 and hex20, whose lumped masses "
+                 "do not, else lumped"),
       number_key("mass_damping", &T::mass_damping, "1/s", not_negative, Need::optional,
                  "rate at which a free motion loses its velocity: Rayleigh damping by mass (energy drag)"),
       tables_key("energy", &T::energies, energy_section, Need::optional, "what a free object is made of; at least one"),

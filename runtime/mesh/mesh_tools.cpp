@@ -9,51 +9,19 @@
 
 #include "runtime/error.h"
 #include "runtime/mesh/quadrature.h"
+#include "runtime/mesh/volume_factor.h"
 
 namespace ergon {
 namespace {
 
-using Jacobian = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3>;
-
-// Of the map from the reference element to the rest shape, at a point with the given shape gradients.
-Jacobian jacobian_at(const Mesh& mesh, const int* nodes, const Eigen::MatrixXd& gradients) {
-  Jacobian jacobian = Jacobian::Zero(3, gradients.cols());
-  for (Eigen::Index i = 0; i < gradients.rows(); ++i) jacobian += mesh.X.col(nodes[i]) * gradients.row(i);
-  return jacobian;
-}
-
-// Ratio of rest to reference volume; signed for solids.
-double volume_factor(const Jacobian& jacobian) {
-  switch (jacobian.cols()) {
-    case 3:
-      return jacobian.determinant();
-    case 2:
-      return Eigen::Vector3d(jacobian.col(0)).cross(Eigen::Vector3d(jacobian.col(1))).norm();
-    case 1:
-      return jacobian.col(0).norm();
-    default:
-      return 1;
-  }
-}
-
-double volume_factor(const Mesh& mesh, const int* nodes, const Eigen::MatrixXd& gradients) {
-  return volume_factor(jacobian_at(mesh, nodes, gradients));
-}
-
 // The volume factor, negative where a membrane or line is turned back against its centre.
 double oriented_factor(const Mesh& mesh, const int* nodes, const Eigen::MatrixXd& gradients,
                        const Eigen::MatrixXd& centre_gradients) {
-  const Jacobian here = jacobian_at(mesh, nodes, gradients);
+  const CellJacobian here = jacobian_at(mesh, nodes, gradients);
   const double factor = volume_factor(here);
   if (here.cols() == 3 || here.cols() == 0) return factor;
-  const Jacobian centre = jacobian_at(mesh, nodes, centre_gradients);
+  const CellJacobian centre = jacobian_at(mesh, nodes, centre_gradients);
   return (centre.transpose() * here).determinant() < 0 ? -factor : factor;
-}
-
-std::vector<Eigen::MatrixXd> gradients_at(Element element, const std::vector<Eigen::Vector3d>& points) {
-  std::vector<Eigen::MatrixXd> gradients;
-  for (const Eigen::Vector3d& point : points) gradients.push_back(shape_gradients(element, point));
-  return gradients;
 }
 
 // Where orientation is checked; one point tells all of a linear simplex.

@@ -32,6 +32,7 @@ void TimeStepper::take_balance(const Eigen::Matrix3Xd& x) {
   sum(friction, balance_.friction);
   sum(damping, balance_.damping);
   if (system_->damps()) system_->add_damping(system_->lagged_velocity(x), balance_.damping);
+  system_->add_coupled_drag(x, balance_.damping);
 }
 
 // `state`: after the step; the state before is in it too.
@@ -39,6 +40,7 @@ Budget TimeStepper::budget_of(const State& state, const StepRecord& record, cons
   Budget out;
   const Eigen::Matrix3Xd way = state.x - state.last_x;
   const bool inert = integrator_named(options_.integrator).has_inertia;
+  const Eigen::Matrix3Xd gain = mass_times(state.v - state.last_v), push = mass_times(balance_.a);
   double stored_work = 0, inertia_work = 0, free_kinetic = 0, held_kinetic = 0;
   for (int v = 0; v < system_->vertices(); ++v) {
     const bool held = !system_->moves(v);
@@ -46,8 +48,7 @@ Budget TimeStepper::budget_of(const State& state, const StepRecord& record, cons
     const auto dx = way.col(v);
     const double stored = balance_.stored.col(v).dot(dx), friction = balance_.friction.col(v).dot(dx),
                  damping = balance_.damping.col(v).dot(dx);
-    const double kinetic =
-        inert ? mass_[v] / 2 * (state.v.col(v) - state.last_v.col(v)).dot(state.v.col(v) + state.last_v.col(v)) : 0;
+    const double kinetic = inert ? gain.col(v).dot(state.v.col(v) + state.last_v.col(v)) / 2 : 0;
     stored_work += stored;
     out.friction += friction;
     out.damping += damping;
@@ -55,7 +56,7 @@ Budget TimeStepper::budget_of(const State& state, const StepRecord& record, cons
     if (held)
       out.script += stored + friction + damping + kinetic;
     else
-      inertia_work += mass_[v] * balance_.a.col(v).dot(dx);
+      inertia_work += push.col(v).dot(dx);
   }
   double change = 0;  // of stored energy
   for (int i = 0; i < system_->potential_count(); ++i) {

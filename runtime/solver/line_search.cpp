@@ -17,9 +17,12 @@ constexpr double approximate_wolfe = 0.8;
 constexpr double suspicious_change = 1e-8;
 
 double magnitude_of(const Evaluation& evaluation) {
-  double sum = 0;
-  for (double value : evaluation.by_potential) sum += std::abs(value);
-  return sum;
+  double sum = 0, rest = evaluation.value;
+  for (const double value : evaluation.by_potential) {
+    sum += std::abs(value);
+    rest -= value;
+  }
+  return sum + std::abs(rest);
 }
 
 double free_dot(const System& system, const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {

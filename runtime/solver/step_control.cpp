@@ -83,10 +83,15 @@ std::string StepControl::refusal(const State& state, const StepRecord& record) c
   if (integrator_named(stepper_->options().integrator).has_inertia)
     return fmt::format("even with dt = {:.3g} s {}", record.dt, record.reason);
   const double factor = stepper_->load_factor(state.time);
+  const double more = stepper_->load_factor(state.time + record.dt) - factor;
+  if (more == 0)  // what drives the scene is a script
+    return fmt::format(
+        "no stable equilibrium was found past {:.6g} s, as at a limit point; the one there is kept. {:.3g} s later: {}",
+        state.time, record.dt, record.reason);
   return fmt::format(
       "no stable equilibrium was found past load factor {:.6g}, as at a limit point; the one there is kept. At a load "
       "factor larger by {:.3g}: {}",
-      factor, stepper_->load_factor(state.time + record.dt) - factor, record.reason);
+      factor, more, record.reason);
 }
 
 }  // namespace ergon

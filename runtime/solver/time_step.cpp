@@ -15,6 +15,13 @@ namespace ergon {
 TimeStepper::TimeStepper(System& system, Eigen::VectorXd mass, Contact* contact, StepOptions options, Script script)
     : system_(&system), mass_(std::move(mass)), contact_(contact), options_(options), script_(std::move(script)) {
   resisting_mass_ = system.carriers().resisting_mass(mass_);
+  lumped_mass_ = mass_;
+  const CoupledMass& coupled = system.coupled_mass();
+  for (int v = 0; v < system.vertices(); ++v) {
+    if (!coupled.couples(v)) continue;
+    resisting_mass_[v] = coupled.bound[v];
+    lumped_mass_[v] = 0;
+  }
   const auto positive = [](const char* name, double value, const char* unit) {
     if (!(value > 0) || !std::isfinite(value)) {
       throw InputError(fmt::format("{} is {:g} {}; it must be above 0", name, value, unit));
@@ -36,6 +43,7 @@ StepRecord TimeStepper::step(State& state) {
     record.dt = options_.dt;
 
     set_internal(state);
+    scripted_a_ = scripted_acceleration(state);
     const Integrator integrator = integrator_for(state);
     if (integrator.has_inertia && system_->damps()) lag_stiffness(state);
     if (known_.x.cols() == 0 || known_.x != state.x) energies(state);
@@ -85,12 +93,8 @@ Eigen::Matrix3Xd TimeStepper::free_acceleration(const State& state) {
   system_->gradient_of(stored, state.x, gradient);
   if (system_->damps()) system_->add_damping(state.v, gradient);
   system_->guide(gradient);
-  for (int v = 0; v < system_->vertices(); ++v) {
-    if (system_->block_of(v) < 0)
-      gradient.col(v).setZero();
-    else
-      gradient.col(v) /= -mass_[v];
-  }
+  gradient *= -1;
+  divide_by_mass(gradient);
   system_->carriers().place(gradient);
   return gradient;
 }
@@ -109,7 +113,7 @@ TimeStepper::Solve TimeStepper::stage_of(const State& state, const Stage& stage,
   const double part = out.lag_dt / (stage.time * dt);
   for (int v = 0; v < system_->vertices(); ++v) {
     if (system_->moves(v)) continue;
-    out.xhat.col(v) = state.x.col(v);
+    out.xhat.col(v) = goal.col(v) - out.dt * out.dt * scripted_a_.col(v);
     out.xlag.col(v) = goal.col(v) - part * (goal.col(v) - state.x.col(v));
   }
   return out;
@@ -128,7 +132,7 @@ Moment TimeStepper::moment_of(const State& state, const Stage& stage, const std:
     if (!inert) out.a.col(v).setZero();
     if (system_->moves(v)) continue;
     out.v.col(v) = (x.col(v) - state.x.col(v)) / (stage.time * dt);
-    out.a.col(v).setZero();
+    if (inert) out.a.col(v) = scripted_a_.col(v);
   }
   return out;
 }
@@ -189,6 +193,7 @@ void TimeStepper::set_lags(const Solve& stage) {
   }
   if (system_->damps() && integrator_named(options_.integrator).has_inertia)
     system_->lag_motion(stage.xlag, stage.lag_dt);
+  system_->lag_coupled_mass(stage.xhat, stage.dt, stage.xlag, stage.lag_dt);
 }
 
 // With what the step starts from as lags.

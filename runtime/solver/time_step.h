@@ -15,6 +15,9 @@
 //
 // Constraints that are to keep a tolerance (runtime/solver/constraints.h) are solved for again until they do.
 //
+// Coupled mass of the system (System::coupled_mass) has the same xhat and xlag in place of a potential of inertia.
+// Scripted vertices pull the free ones that they share mass with by their mean acceleration over the step.
+//
 // A density has the lag `Flag` in place of positions: its F there. Lags that an energy renews itself are part of the
 // state; they change once a step is accepted, by what the energy sees at its end with the lags of the last stage.
 
@@ -140,9 +143,9 @@ struct StepRecord {
 
 class TimeStepper {
  public:
-  // The system with all its potentials, inertia among them; mass: kg, per vertex, 0 where it is carried; `contact` may
-  // be null. System and contact must outlive this. The vertices of `script` are fixed in the system and follow it.
-  // Throws InputError for a dt or tolerance that is not positive.
+  // The system with all its potentials, inertia among them; mass: kg, per vertex, 0 where it is carried, and a scale
+  // only where it is coupled; `contact` may be null. System and contact must outlive this. The vertices of `script` are
+  // fixed in the system and follow it. Throws InputError for a dt or tolerance that is not positive.
   TimeStepper(System& system, Eigen::VectorXd mass, Contact* contact, StepOptions options, Script script = {});
 
   StepRecord step(State& state);
@@ -196,12 +199,17 @@ class TimeStepper {
   void report(const State& state, const NewtonResult& result, StepRecord& record);
   bool is_stored(int potential) const;
   double kinetic_energy(const Eigen::Matrix3Xd& v) const;
+  Eigen::Matrix3Xd mass_times(const Eigen::Matrix3Xd& field) const;
+  void divide_by_mass(Eigen::Matrix3Xd& forces) const;
+  Eigen::Matrix3Xd scripted_acceleration(const State& state) const;
   Energies energies_of(const Evaluation& evaluation, const Eigen::Matrix3Xd& v) const;
   std::vector<std::string> skipped_parts() const;
 
   System* system_;
   Eigen::VectorXd mass_;
-  Eigen::VectorXd resisting_mass_;  // kg: of carried vertices too, what resists the motion of one alone
+  Eigen::VectorXd resisting_mass_;  // kg: of carried vertices too, what resists the motion of one alone at least
+  Eigen::VectorXd lumped_mass_;     // kg: 0 where it is coupled
+  Eigen::Matrix3Xd scripted_a_;     // m/s^2, in this step; 0 for what is not scripted
   Contact* contact_;
   StepOptions options_;
   Script script_;

@@ -52,8 +52,9 @@ void TimeStepper::report(const State& state, const NewtonResult& result, StepRec
     record.budget.integrator -= flow;
   }
   known_ = {state.x, after.by_potential};
+  const Eigen::Matrix3Xd momenta = mass_times(state.v);
   for (int v = 0; v < (options_.points < 0 ? system_->vertices() : options_.points); ++v) {
-    const Eigen::Vector3d p = mass_[v] * state.v.col(v), x = state.x.col(v);
+    const Eigen::Vector3d p = momenta.col(v), x = state.x.col(v);
     record.momentum.linear += p;
     record.momentum.angular += x.cross(p);
   }
@@ -63,9 +64,7 @@ bool TimeStepper::is_stored(int potential) const { return !has_lag(system_->pote
 
 double TimeStepper::kinetic_energy(const Eigen::Matrix3Xd& v) const {
   if (!integrator_named(options_.integrator).has_inertia) return 0;
-  double sum = 0;
-  for (int i = 0; i < mass_.size(); ++i) sum += mass_[i] / 2 * v.col(i).squaredNorm();
-  return sum;
+  return mass_times(v).cwiseProduct(v).sum() / 2;
 }
 
 // Lags and contact of a state that nothing was stepped to.

@@ -78,6 +78,31 @@ TEST(LoadStep, StopsAtALimitPointAndKeepsTheStateThere) {
   EXPECT_GT(refused, 0);
 }
 
+// A script that pulls the apex down by a soft spring has no load to speak of: the place is told as a time.
+TEST(LoadStep, StopsAtALimitPointOfAScriptAndSaysWhen) {
+  const Dome dome;
+  Matrix3Xd X(3, 5);
+  X.leftCols(4) = dome.scene().state.x;
+  X.col(4) = X.col(3) - Vector3d(0, 1, 0);
+  BodyScene scene(X, Eigen::VectorXd::Ones(5), Vector3d::Zero(), {1, 1, 1, 0, 1}, false);
+  scene.add_springs({0, 3, 1, 3, 2, 3}, dome.k, X);
+  scene.add_springs({3, 4}, 1, X);
+  Script script;
+  script.add({4}, X, X.col(4), {{1, {0, -10, 0}, {0, 0, 0}}});
+  TimeStepper stepper(scene.system, scene.mass, nullptr,
+                      {.dt = 0.1, .integrator = "quasi_static", .tolerance = 1e-9, .project_on_demand = true}, script);
+  StepControl control(stepper, limits);
+  StepRecord record;
+  do record = control.step(scene.state);
+  while (record.accepted);
+  // The spring's force is greatest where the dome's is, at a time that its length tells.
+  const double time = (dome.force(dome.limit_height()) + dome.height - dome.limit_height()) / 10;
+  EXPECT_NEAR(scene.state.time, time, 2e-4);
+  EXPECT_THAT(record.reason, testing::MatchesRegex("no stable equilibrium was found past 0\\.[0-9]* s, as at a limit "
+                                                   "point; the one there is kept\\. 9\\.77e-05 s later: .*"));
+  EXPECT_THAT(record.reason, testing::Not(HasSubstr("larger by")));
+}
+
 // Pushed on by force, the dome snaps through to where its bars are in tension.
 TEST(LoadStep, GoesThroughALimitPointWhenAskedTo) {
   Dome dome;

@@ -6,7 +6,7 @@
 
 #include "runtime/mesh/load_shares.h"
 #include "runtime/mesh/mesh_build.h"
-#include "runtime/mesh/mesh_tools.h"
+#include "runtime/mesh/consistent_mass.h"
 #include "tools/verify/meshes.h"
 
 namespace ergon {
@@ -62,7 +62,7 @@ Beam make_beam(const BeamForm& form) {
   model.hold(vertices_where(mesh, [&](const Eigen::Vector3d& X) { return X[0] < held; }));
   out.tip = load_shares(mesh, vertices_where(mesh, [](const Eigen::Vector3d& X) { return X[0] > 1 - 1e-9; })).shares;
   const double section = dimension == 3 ? width * form.height : dimension == 2 ? width : 1;
-  out.length = lumped_masses(mesh, 1 / section);
+  out.length = mass_matrix(mesh, 1 / section);
   return out;
 }
 

@@ -8,9 +8,15 @@
 
 namespace ergon {
 
-Eigen::Vector3d SceneCase::displacement() const { return (end.x - built.start.x) * built.mass / built.mass.sum(); }
+Eigen::Vector3d SceneCase::displacement() const {
+  const Eigen::VectorXd mass = built.mass_shares();
+  return (end.x - built.start.x) * mass / mass.sum();
+}
 
-Eigen::Vector3d SceneCase::velocity() const { return end.v * built.mass / built.mass.sum(); }
+Eigen::Vector3d SceneCase::velocity() const {
+  const Eigen::VectorXd mass = built.mass_shares();
+  return end.v * mass / mass.sum();
+}
 
 SceneCase run_scene_case(const std::string& name, const std::string& text, const SceneCaseOptions& options) {
   const Scene scene = read_scene_text(text, name);

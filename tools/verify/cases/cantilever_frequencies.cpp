@@ -1,4 +1,4 @@
-// Small vibrations of a cantilever, by the tangent and the lumped masses that time steps use.
+// Small vibrations of a cantilever, by the tangent and the masses that time steps use.
 
 #include <fmt/format.h>
 
