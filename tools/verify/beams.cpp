@@ -4,9 +4,9 @@
 
 #include <cmath>
 
+#include "runtime/mesh/consistent_mass.h"
 #include "runtime/mesh/load_shares.h"
 #include "runtime/mesh/mesh_build.h"
-#include "runtime/mesh/consistent_mass.h"
 #include "tools/verify/meshes.h"
 
 namespace ergon {
