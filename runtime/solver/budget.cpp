@@ -1,8 +1,8 @@
-// Where the energy of a step went. All forces at the end of the last solve, with the stage's accelerations, are
-// multiplied by the displacements of the whole step. What is not the work of any of them - the change of kinetic energy
-// less the work of mass*acceleration, and the change of stored energy less the work of its gradient - is the
-// integrator's: of implicit Euler, mass/2*|change of v|^2 and what the stored energy is convex by. What then is left is
-// the work of forces that Newton's method left unbalanced.
+// Where the energy of a step went. The forces that each stage balances, with its accelerations, are multiplied by the
+// part of the step's displacement that is made with the stage's velocity: of methods of one stage, all of it. What is
+// not the work of any of them - the change of kinetic energy less the work of mass*acceleration, and the change of
+// stored energy less the work of its gradient - is the integrator's: of implicit Euler, mass/2*|change of v|^2 and what
+// the stored energy is convex by. What then is left is the work of forces that Newton's method left unbalanced.
 
 #include "runtime/solver/lags.h"
 #include "runtime/solver/largest.h"
@@ -35,19 +35,48 @@ void TimeStepper::take_balance(const Eigen::Matrix3Xd& x) {
   system_->add_coupled_drag(x, balance_.damping);
 }
 
+// What was balanced when the last step ended. Where none did, only accelerations are known.
+TimeStepper::Balance TimeStepper::starting_balance(const Moment& start) const {
+  if (known_.balance.stored.cols() > 0) return known_.balance;
+  const Eigen::Matrix3Xd none = Eigen::Matrix3Xd::Zero(3, system_->vertices());
+  if (start.a.cols() == 0) return {none, none, none, none, none};
+  return {-mass_times(start.a), none, none, start.a, none};
+}
+
+void TimeStepper::take_ways(const State& state, const Integrator& integrator, const std::vector<Moment>& moments) {
+  const Eigen::Matrix3Xd whole = moments.back().x - state.x;
+  const std::vector<double> weights = slope_weights(integrator);
+  if (weights.empty()) {
+    balances_.assign(1, balance_);
+    balances_[0].way = whole;
+  }
+  for (size_t k = 0; k + 1 < weights.size(); ++k) {
+    balances_[k].way = weights[k + 1] * options_.dt * moments[k + 1].v;
+    for (int v = 0; v < system_->vertices(); ++v)
+      if (!system_->moves(v)) balances_[k].way.col(v) = weights[k + 1] * whole.col(v);
+  }
+}
+
 // `state`: after the step; the state before is in it too.
 Budget TimeStepper::budget_of(const State& state, const StepRecord& record, const Evaluation& evaluation) {
   Budget out;
-  const Eigen::Matrix3Xd way = state.x - state.last_x;
   const bool inert = integrator_named(options_.integrator).has_inertia;
-  const Eigen::Matrix3Xd gain = mass_times(state.v - state.last_v), push = mass_times(balance_.a);
+  const Eigen::Matrix3Xd gain = mass_times(state.v - state.last_v);
+  std::vector<Eigen::Matrix3Xd> pushes;
+  for (const Balance& part : balances_) pushes.push_back(mass_times(part.a));
   double stored_work = 0, inertia_work = 0, free_kinetic = 0, held_kinetic = 0;
   for (int v = 0; v < system_->vertices(); ++v) {
     const bool held = !system_->moves(v);
     if (!held && system_->block_of(v) < 0) continue;  // carried: counted where it is carried from
-    const auto dx = way.col(v);
-    const double stored = balance_.stored.col(v).dot(dx), friction = balance_.friction.col(v).dot(dx),
-                 damping = balance_.damping.col(v).dot(dx);
+    double stored = 0, friction = 0, damping = 0, inertia = 0;
+    for (size_t k = 0; k < balances_.size(); ++k) {
+      const Balance& part = balances_[k];
+      const auto dx = part.way.col(v);
+      stored += part.stored.col(v).dot(dx);
+      friction += part.friction.col(v).dot(dx);
+      damping += part.damping.col(v).dot(dx);
+      inertia += pushes[k].col(v).dot(dx);
+    }
     const double kinetic = inert ? gain.col(v).dot(state.v.col(v) + state.last_v.col(v)) / 2 : 0;
     stored_work += stored;
     out.friction += friction;
@@ -56,7 +85,7 @@ Budget TimeStepper::budget_of(const State& state, const StepRecord& record, cons
     if (held)
       out.script += stored + friction + damping + kinetic;
     else
-      inertia_work += push.col(v).dot(dx);
+      inertia_work += inertia;
   }
   double change = 0;  // of stored energy
   for (int i = 0; i < system_->potential_count(); ++i) {

@@ -129,6 +129,23 @@ Integrator integrator_named(const std::string& name, double ratio) {
   throw InputError(fmt::format("there is no integrator '{}'; there are {}", name, fmt::join(integrator_names(), ", ")));
 }
 
+// By the velocities of a motion whose accelerations are 0 but for one.
+std::vector<double> slope_weights(const Integrator& integrator) {
+  if (integrator.stages.size() < 2) return {};
+  std::vector<double> out;
+  for (size_t accelerated = 0; accelerated < integrator.stages.size() + 2; ++accelerated) {
+    const auto a = [&](size_t j) { return Eigen::Matrix3Xd::Constant(3, 1, j == accelerated ? 1 : 0); };
+    const Eigen::Matrix3Xd none = Eigen::Matrix3Xd::Zero(3, 1);
+    std::vector<Moment> moments = {{none, none, a(0)}, {none, none, a(1)}};
+    for (const Stage& stage : integrator.stages) {
+      Eigen::Matrix3Xd v = velocity(stage.vhat, moments, 1) + stage.rate * a(moments.size());
+      moments.push_back({none, std::move(v), a(moments.size())});
+    }
+    out.push_back(moments.back().v(0));
+  }
+  return out;
+}
+
 double error_constant(const Integrator& integrator, double ratio) {
   const int degree = integrator.order + 1;
   const auto motion = [&](double t) {

@@ -57,6 +57,10 @@ std::vector<std::string> integrator_names();
 // ratio: dt of this step over that of the last one, for two-step methods. Throws InputError naming the nearest.
 Integrator integrator_named(const std::string& name, double ratio = 1);
 
+// Of each moment that known_moments and the stages make, the weight of its slopes (v and a) in the change of x and v
+// over the step; they add to 1. Empty for methods of one stage.
+std::vector<double> slope_weights(const Integrator& integrator);
+
 // The error of a step's position is this times dt^(order + 1) times the derivative of that order of the motion (m,
 // where that is in m/s^(order + 1)), to leading order: what the method makes of t^(order + 1)/(order + 1)!. With
 // accelerations, which steps have anyway, it gives an estimate for nothing, like that for Newmark's method in Error

@@ -48,6 +48,7 @@ StepRecord TimeStepper::step(State& state) {
     if (integrator.has_inertia && system_->damps()) lag_stiffness(state);
     if (known_.x.cols() == 0 || known_.x != state.x) energies(state);
     std::vector<Moment> moments = known_moments(state, integrator);
+    balances_.assign(1, starting_balance(moments.back()));
     const bool was_stable = integrator.has_inertia || is_stable(state);
     for (const Stage& stage : integrator.stages) {
       Eigen::Matrix3Xd x = moments.back().x;
@@ -57,10 +58,14 @@ StepRecord TimeStepper::step(State& state) {
       if (!record.accepted) break;
       moments.push_back(moment_of(state, stage, moments, x));
       balance_.a = moments.back().a;
+      balances_.push_back(balance_);
     }
     record.accepted = record.accepted && finish(integrator, moments, result);
     if (record.accepted && options_.estimate_error) record.error = local_error(state, integrator, moments);
-    if (record.accepted) advance(state, moments.back());
+    if (record.accepted) {
+      take_ways(state, integrator, moments);
+      advance(state, moments.back());
+    }
   }
   report(state, result, record);
   return record;

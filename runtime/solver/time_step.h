@@ -172,6 +172,11 @@ class TimeStepper {
     double lag_dt = 0;      // s, that it takes
     double end = 0;         // s, time at its end
   };
+  // Forces on the vertices (N, downhill is minus these) and accelerations that a solve balanced, and the part of the
+  // step's displacement (m) that was made with them.
+  struct Balance {
+    Eigen::Matrix3Xd stored, friction, damping, a, way;
+  };
   Integrator integrator_for(const State& state) const;
   std::vector<Moment> known_moments(const State& state, const Integrator& integrator);
   Solve stage_of(const State& state, const Stage& stage, const std::vector<Moment>& moments) const;
@@ -183,6 +188,8 @@ class TimeStepper {
   void set_loads(double factor);
   bool is_stable(const State& state);
   void take_balance(const Eigen::Matrix3Xd& x);
+  Balance starting_balance(const Moment& start) const;
+  void take_ways(const State& state, const Integrator& integrator, const std::vector<Moment>& moments);
   Budget budget_of(const State& state, const StepRecord& record, const Evaluation& evaluation);
   double local_error(const State& state, const Integrator& integrator, const std::vector<Moment>& moments) const;
   void judge_path(const State& state, const Eigen::Matrix3Xd& x, bool was_stable, NewtonResult& result);
@@ -213,15 +220,13 @@ class TimeStepper {
   Contact* contact_;
   StepOptions options_;
   Script script_;
-  // Forces on the vertices (N, downhill is minus these) and accelerations that the last solve balanced.
-  struct Balance {
-    Eigen::Matrix3Xd stored, friction, damping, a;
-  };
-  Balance balance_;
+  Balance balance_;                // of the last solve
+  std::vector<Balance> balances_;  // of the moments that the step is made of: at its start, then the stages
   // Of the state at the end of the last step.
   struct Known {
     Eigen::Matrix3Xd x;
     PotentialValues energy;
+    Balance balance = {};  // without columns where nothing was stepped to it
   };
   Known known_;
   Constraints constraints_;

@@ -51,7 +51,7 @@ void TimeStepper::report(const State& state, const NewtonResult& result, StepRec
     record.budget.damping += flow;
     record.budget.integrator -= flow;
   }
-  known_ = {state.x, after.by_potential};
+  known_ = {state.x, after.by_potential, balance_};
   const Eigen::Matrix3Xd momenta = mass_times(state.v);
   for (int v = 0; v < (options_.points < 0 ? system_->vertices() : options_.points); ++v) {
     const Eigen::Vector3d p = momenta.col(v), x = state.x.col(v);

@@ -62,6 +62,51 @@ TEST(Budget, OfASlidingPointIsThatOfCoulomb) {
   }
 }
 
+// A point on a spring slides to and fro: each stage of a method of several dissipates by its own speed. Over the whole
+// step the last stage's friction would do so with the wrong sign where the motion turns.
+TEST(Budget, OfStagesIsThatOfEach) {
+  const double mu = 0.2, m = 0.5, k = 400;
+  for (const std::string integrator : {"sdirk2", "tr_bdf2"}) {
+    Matrix3Xd X(3, 2);
+    X << 0, 1, 5e-4, 5e-4, 0, 0;
+    BodyScene scene(X, Eigen::Vector2d(1, m), Vector3d(0, -9.81, 0), {1, 0});
+    scene.add_springs({0, 1}, k, X);
+    scene.add_ground({{.friction = mu}});
+    scene.start({.dt = 2e-3,
+                 .integrator = integrator,
+                 .tolerance = 1e-7,
+                 .friction_lag_iterations = 20,
+                 .friction_tolerance = 1e-6});
+    scene.state.x(0, 1) = 1.1;
+    double total = scene.stepper->energies(scene.state).total, friction = 0, way = 0;
+    for (int i = 0; i < 200; ++i) {
+      const StepRecord record = scene.step();
+      ASSERT_TRUE(record.accepted) << record.reason;
+      const Budget& b = record.budget;
+      EXPECT_NEAR(b.change, record.energy.total - total, 1e-10) << integrator;
+      EXPECT_NEAR(b.residual, 0, 5e-7) << integrator << " step " << i;
+      EXPECT_GE(b.friction, 0) << integrator << " step " << i;
+      total = record.energy.total;
+      friction += b.friction;
+      way += std::abs(scene.state.x(0, 1) - scene.state.last_x(0, 1));
+    }
+    EXPECT_GT(way, 0.2);
+    EXPECT_NEAR(friction, mu * m * 9.81 * way, 0.05 * friction) << integrator;
+  }
+}
+
+TEST(Integrator, WeighsTheSlopesOfItsStagesAsItsTableSays) {
+  EXPECT_TRUE(slope_weights(integrator_named("bdf2")).empty());
+  const double gamma = 1 - std::sqrt(0.5), side = std::sqrt(2.0) / 4;
+  const std::map<std::string, std::vector<double>> tables = {{"sdirk2", {0, 0, 1 - gamma, gamma}},
+                                                             {"tr_bdf2", {0, side, side, gamma}}};
+  for (const auto& [name, table] : tables) {
+    const std::vector<double> found = slope_weights(integrator_named(name));
+    ASSERT_EQ(found.size(), table.size()) << name;
+    for (size_t i = 0; i < table.size(); ++i) EXPECT_NEAR(found[i], table[i], 1e-15) << name;
+  }
+}
+
 // A cube of springs that spins and trembles, free of forces: which momenta stay. All keep the linear one. The angular
 // one is a quadratic invariant, which symplectic Gauss methods, of which midpoint is the first, keep: Brugnano,
 // Iavernaro, Trigiante 2010, arXiv:1005.1930, section 1; others lose it with their order.

@@ -66,7 +66,8 @@ TEST(consistent_masses, spin_with_the_energy_and_momentum_of_the_solid) {
 
 // Every integrator, with an end that is moved, damping by mass, and accelerations at the start.
 TEST(consistent_masses, close_the_budget_under_scripts_and_damping) {
-  for (const char* integrator : {"implicit_euler", "bdf2", "newmark", "generalised_alpha", "midpoint"}) {
+  for (const char* integrator :
+       {"implicit_euler", "bdf2", "newmark", "generalised_alpha", "midpoint", "sdirk2", "tr_bdf2"}) {
     BuiltScene built = build_text(block(std::string("dt = 0.01\nsteps = 12\nintegrator = \"") + integrator + "\"",
                                         "element = \"tet10\"\nmass_damping = 4\n[[object.scripted]]\nmax = [0, inf, "
                                         "inf]\n[[object.scripted.key]]\ntime = 0.1\ntranslate = [0, 0.02, 0]\n",
