@@ -77,7 +77,8 @@ void run(const VerifyRows& rows) {
   if (rows.quick()) return;
   compare(Element::hex20, 32, reduced, std::nullopt, "folds at the force are as narrow as cells", rows);
   compare(Element::hex27, 16, std::nullopt, std::nullopt, "locks where quadrature is full", rows);
-  compare(Element::tri3, 40, std::nullopt, std::nullopt, "hinges know no Poisson effect of bending", rows);
+  compare(Element::tri3, 40, std::nullopt, std::nullopt, "no hinges along planes of symmetry, where cells turn freely",
+          rows);
 }
 
 }  // namespace
