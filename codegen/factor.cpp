@@ -1,7 +1,6 @@
 #include "codegen/factor.h"
 
 #include <algorithm>
-#include <map>
 
 namespace ergon {
 namespace {
@@ -15,14 +14,17 @@ bool less(const Factor& a, const Factor& b) {
   return a.base != b.base ? a.base < b.base : a.num * b.den < b.num * a.den;
 }
 
-// The factor found in most monomials, if in at least two.
+// The factor found in most monomials, if in at least two; of several the greatest.
 bool most_common(const std::vector<Monomial>& monomials, Factor& best) {
-  std::map<Factor, int, decltype(&less)> counts(&less);
-  for (const Monomial& m : monomials)
-    for (const Factor& f : m.factors) counts[f]++;
-  int most = 1;
-  for (const auto& [factor, count] : counts)
-    if (count > 1 && count >= most) most = count, best = factor;
+  std::vector<Factor> all;
+  for (const Monomial& m : monomials) all.insert(all.end(), m.factors.begin(), m.factors.end());
+  std::sort(all.begin(), all.end(), less);
+  std::ptrdiff_t most = 1;
+  for (auto first = all.begin(); first != all.end();) {
+    const auto last = std::find_if_not(first, all.end(), [&](const Factor& f) { return f == *first; });
+    if (last - first > 1 && last - first >= most) most = last - first, best = *first;
+    first = last;
+  }
   return most > 1;
 }
 

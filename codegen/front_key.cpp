@@ -48,10 +48,11 @@ class Bytes {
     for (const T& item : list) add(item);
   }
   void add(const Energy& energy) {
-    const auto& [kind, name, geometry, summary, cite, symbols, lets, cases, active, require, updates, value, part_of,
-                 constraint, load, fixed_frame, text, file] = energy;
+    const auto& [kind, name, geometry, summary, cite, symbols, lets, cases, active, require, updates, value, natural,
+                 part_of, constraint, load, fixed_frame, text, file] = energy;
     add(static_cast<int>(kind)), add(name), add(geometry), add(summary), add(cite), add(symbols), add(lets);
-    add(cases), add(active), add(require), add(updates), add(value), add(part_of), add(int{fixed_frame}), add(text);
+    add(cases), add(active), add(require), add(updates), add(value), add(natural), add(part_of), add(int{fixed_frame}),
+        add(text);
   }
   void add(const FrontOptions& options) {
     const auto& [case_name, type, stable, compiler] = options;

@@ -9,6 +9,7 @@
 #include "symbolic/declaration.h"
 #include "symbolic/functions.h"
 #include "symbolic/other_names.h"
+#include "symbolic/sliced.h"
 #include "symbolic/stretches.h"
 #include "symbolic/typing.h"
 
@@ -108,6 +109,7 @@ class Analysis {
     for (const Condition& condition : energy_.active) check(condition, known);
     for (const Condition& condition : energy_.require) check(condition, known);
     for (const Let& update : energy_.updates) renewed(update, typed(*update.expression, known));
+    if (energy_.natural) natural(typed(*energy_.natural, known));
     if (energy_.kind == Energy::Kind::distance) return gap_of_a_distance(known);
     const Quantity value = typed(*energy_.value, known);
     const Place place = start_of(*energy_.value);
@@ -148,6 +150,26 @@ class Analysis {
     if (uses_stretches(energy_))
       throw SourceError(update.place,
                         "a density that calls `stretches` renews no lags: it sees its F by these alone; write it in F");
+  }
+
+  // `natural` is a pure number or a square matrix over the columns of F, and knows nothing of F.
+  void natural(const Quantity& found) const {
+    const Place place = start_of(*energy_.natural);
+    const int n = energy_.find("F")->shape.cols;
+    if (!found.shape.scalar() && found.shape != Shape{n, n})
+      throw SourceError(place, fmt::format("`natural` is the shape without stress over the one at rest: expected a "
+                                           "number or {}, found {}",
+                                           to_string(Shape{n, n}), to_string(found.shape)));
+    if (!found.any_unit && found.unit != Unit{})
+      throw SourceError(place,
+                        fmt::format("`natural` is the shape without stress over the one at rest: expected a pure "
+                                    "number, found {}",
+                                    to_string(found.unit)));
+    for (const Symbol& symbol : sliced(energy_, energy_.natural).symbols)
+      if (symbol.role == Role::dof)
+        throw SourceError(place,
+                          "`natural` is the shape without stress, of params, rest data and lags alone; this one "
+                          "changes with F");
   }
 
   // A distance gives `gap2`, `gap` or both, and may give a `weight` of the energy.

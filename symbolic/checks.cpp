@@ -4,6 +4,7 @@
 #include <array>
 
 #include "symbolic/exact_checks.h"
+#include "symbolic/natural.h"
 
 namespace ergon {
 namespace {
@@ -20,9 +21,11 @@ std::vector<Finding> check_case(const Energy& energy, const std::string& name) {
   if (findings.back().severity == Severity::ok)
     for (const auto& check : {check_smooth, check_boundaries})
       for (Finding& finding : check(energy, name)) findings.push_back(std::move(finding));
-  for (const auto& check : {check_rigid_motion, check_load, check_rest, check_moduli, check_stable_at_rest, check_range,
-                            check_collapse, check_inversion})
-    add(check(energy, name));
+  add(check_rigid_motion(energy, name));
+  add(check_load(energy, name));
+  const Energy natural = seen_from_natural(energy);
+  for (const auto& check : {check_rest, check_moduli, check_stable_at_rest, check_range}) add(check(natural, name));
+  for (const auto& check : {check_collapse, check_inversion}) add(check(energy, name));
   return findings;
 }
 

@@ -75,7 +75,10 @@ struct Energy {
   std::vector<Condition> require;
   // Lags that the energy renews itself when a step has ended, by expressions of what it then sees; they start at 0.
   std::vector<Let> updates;
-  ExpressionPtr value;       // null in a distance
+  ExpressionPtr value;  // null in a distance
+  // `natural EXPRESSION` of a density: the shape without stress over the one at rest, a number or a square matrix over
+  // the columns of F; null for none.
+  ExpressionPtr natural;
   std::string part_of;       // `part TEXT`: the sum that it is sound in; "" for one that is sound alone
   std::string constraint;    // `constraint NAME = EXPRESSION`: the let that the value draws to 0; "" without one
   std::string load;          // `load PARAM`: what the value is in proportion to; "" for one that is no load

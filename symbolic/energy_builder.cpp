@@ -60,6 +60,7 @@ void EnergyBuilder::update(const Operand& lag, const Operand& expression) {
   add("update " + lag.expr.text() + " = ", lag.where, &expression);
 }
 
+void EnergyBuilder::natural(const Operand& expression) { add("natural ", expression.where, &expression); }
 void EnergyBuilder::value(const Operand& expression) { add("value ", expression.where, &expression); }
 
 void EnergyBuilder::summary(const std::string& text, Where where) {

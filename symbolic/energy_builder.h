@@ -51,6 +51,7 @@ class EnergyBuilder {
   void active(const Inequality& condition, Where where = Where::here());
   void require(const Inequality& condition, Where where = Where::here());
   void update(const Operand& lag, const Operand& expression);
+  void natural(const Operand& expression);
   void value(const Operand& expression);
 
   void summary(const std::string& text, Where where = Where::here());

@@ -13,9 +13,9 @@ namespace ergon {
 namespace {
 
 const std::vector<std::string> headers = {"density", "energy", "barrier", "distance"};
-const std::vector<std::string> keywords = {"density", "energy", "barrier", "distance", "cite",   "param",
-                                           "lag",     "rest",   "dof",     "let",      "active", "require",
-                                           "frame",   "value",  "case",    "part",     "update", "constraint"};
+const std::vector<std::string> keywords = {"density", "energy", "barrier", "distance", "cite",      "param", "lag",
+                                           "rest",    "dof",    "let",     "active",   "require",   "frame", "value",
+                                           "case",    "part",   "update",  "natural",  "constraint"};
 constexpr const char* any_header =
     "`density NAME GEOMETRY`, `energy NAME STENCIL`, `barrier NAME` or `distance NAME STENCIL`";
 
@@ -145,13 +145,14 @@ class EnergyParser {
     if (word == "load") return load(statement);
 
     if (word == "let" || word == "case" || word == "active" || word == "require" || word == "value" ||
-        word == "update" || word == "constraint") {
+        word == "update" || word == "natural" || word == "constraint") {
       ExpressionParser parser(tokenise(statement, end));
       if (word == "let") let(parser);
       if (word == "case") case_let(parser);
       if (word == "active" || word == "require") condition(parser, word, place);
       if (word == "value") value(parser, place);
       if (word == "update") update(parser, place);
+      if (word == "natural") natural(parser, place);
       if (word == "constraint") constraint(parser, place);
       return;
     }
@@ -241,6 +242,15 @@ class EnergyParser {
     const Token name = parser.take_name("the lag to renew");
     parser.take_sign("=", fmt::format("after '{}'", name.text).c_str());
     energy_.updates.push_back({name.text, "", parser.expression(), name.place});
+    parser.finish();
+  }
+
+  void natural(ExpressionParser& parser, const Place& place) {
+    if (energy_.kind != Energy::Kind::density)
+      throw SourceError(place,
+                        "an energy of points is at rest where its rest data says; `natural` belongs to a density");
+    if (energy_.natural) throw SourceError(place, "a second `natural`; a density states it once");
+    energy_.natural = parser.expression();
     parser.finish();
   }
 

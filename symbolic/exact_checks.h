@@ -23,7 +23,9 @@ std::optional<Finding> check_rigid_motion(const Energy& energy, const std::strin
 // Of an energy that states `load PARAM`: the value is in proportion to the param.
 std::optional<Finding> check_load(const Energy& energy, const std::string& case_name);
 
-// No stress in the undeformed state: F the identity, or dofs at the rest positions of their names (x0 at X0).
+// The next four are given what seen_from_natural() makes of an energy (symbolic/natural.h): F is then told from the
+// shape without stress. No stress in the undeformed state: F the identity, or dofs at the rest positions of their names
+// (x0 at X0).
 std::optional<Finding> check_rest(const Energy& energy, const std::string& case_name);
 
 // A solid with parameters E and nu has the linearisation that these moduli have.

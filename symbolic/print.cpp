@@ -102,6 +102,7 @@ std::string formula_text(const Energy& energy) {
   for (const Condition& c : energy.active) text += fmt::format("active {} < {}\n", to_text(*c.left), to_text(*c.right));
   for (const Condition& c : energy.require)
     text += fmt::format("require {} < {}\n", to_text(*c.left), to_text(*c.right));
+  if (energy.natural) text += "natural " + to_text(*energy.natural) + "\n";
   for (const Let& update : energy.updates)
     text += fmt::format("update {} = {}\n", update.name, to_text(*update.expression));
   return energy.value ? text + "value " + to_text(*energy.value) + "\n" : text;

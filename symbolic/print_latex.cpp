@@ -142,6 +142,8 @@ std::string formula_latex(const Energy& energy) {
     text += to_latex(*c.left) + " &< " + to_latex(*c.right) + " && \\text{(active)} \\\\\n";
   for (const Condition& c : energy.require)
     text += to_latex(*c.left) + " &< " + to_latex(*c.right) + " && \\text{(required)} \\\\\n";
+  if (energy.natural)
+    text += "\\mathbf{F}_\\text{natural} &= " + to_latex(*energy.natural) + " && \\text{(no stress)} \\\\\n";
   for (const Let& update : energy.updates)
     text += name_latex(update.name, !update.expression->shape.scalar()) + " &\\leftarrow " +
             to_latex(*update.expression) + " \\\\\n";

@@ -140,6 +140,9 @@ std::string formula_mathml(const Energy& energy) {
         line(name_mathml(let.name, !let.expression->shape.scalar()), "=", to_mathml(*let.expression), let.case_name);
   for (const Condition& c : energy.active) rows += line(to_mathml(*c.left), "&lt;", to_mathml(*c.right), "active");
   for (const Condition& c : energy.require) rows += line(to_mathml(*c.left), "&lt;", to_mathml(*c.right), "required");
+  if (energy.natural)
+    rows += line("<msub>" + name_mathml("F", true) + "<mtext>natural</mtext></msub>", "=", to_mathml(*energy.natural),
+                 "no stress");
   for (const Let& update : energy.updates)
     rows += line(name_mathml(update.name, !update.expression->shape.scalar()), "←", to_mathml(*update.expression),
                  "after each step");

@@ -12,6 +12,7 @@
 #include "symbolic/exact_checks.h"
 #include "symbolic/ginac_algebra.h"
 #include "symbolic/jet.h"
+#include "symbolic/natural.h"
 #include "symbolic/print.h"
 #include "symbolic/sample_states.h"
 #include "symbolic/state_text.h"
@@ -100,7 +101,13 @@ Largest largest(const std::vector<ClnNumber>& entries) {
 }
 
 const char* where(const Energy& energy) {
-  return energy.kind == Energy::Kind::density ? "at F = I" : "at the rest positions";
+  if (energy.kind != Energy::Kind::density) return "at the rest positions";
+  return energy.natural ? "at F = `natural`" : "at F = I";
+}
+
+// As `ergon eval` takes it.
+std::string told(const Energy& energy, const std::string& case_name, const ExactInputs& state) {
+  return state_text(energy, seen_from_rest(energy, case_name, state));
 }
 
 // The gradient at rest as expressions in the parameters; for stencils at random rest positions.
@@ -221,7 +228,7 @@ std::optional<Finding> check_rest(const Energy& energy, const std::string& case_
                      fmt::format("the {} is not finite {}, because {} or its derivatives are not; write it without a "
                                  "root or quotient that is 0 there",
                                  stress, where(energy), to_text(part)),
-                     start_of(part), state_text(energy, *state)};
+                     start_of(part), told(energy, case_name, *state)};
     }
     const auto terms = terms_at(energy, case_name, *state, found.index);
     const auto most = std::max_element(terms.begin(), terms.end(), [](const auto& a, const auto& b) {
@@ -231,7 +238,7 @@ std::optional<Finding> check_rest(const Energy& energy, const std::string& case_
                    fmt::format("not {}-free {}: the derivative by {} is {:.4g}{}, expected 0{}", stress, where(energy),
                                component_name(energy, found.index), to_double(jet.gradient[found.index]),
                                derivative_unit(energy, 1), terms_text(terms)),
-                   start_of(*most->expression), state_text(energy, *state)};
+                   start_of(*most->expression), told(energy, case_name, *state)};
   }
   return Finding{Severity::ok,
                  "rest",
@@ -242,7 +249,8 @@ std::optional<Finding> check_rest(const Energy& energy, const std::string& case_
 
 std::optional<Finding> check_moduli(const Energy& energy, const std::string& case_name) {
   if (!has_moduli(energy) || !energy.part_of.empty()) return std::nullopt;
-  const Finding good{Severity::ok, "moduli", "the linearisation at F = I has the moduli E and nu", {}, ""};
+  const Finding good{
+      Severity::ok, "moduli", fmt::format("the linearisation {} has the moduli E and nu", where(energy)), {}, ""};
   if (moduli_match_exactly(energy, case_name)) {
     Finding finding = good;
     finding.message += " (exactly)";
@@ -250,7 +258,9 @@ std::optional<Finding> check_moduli(const Energy& energy, const std::string& cas
   }
   StateSampler sampler;
   auto state = rest_state(energy, case_name, sampler);
-  if (!state) return Finding{Severity::warning, "moduli", "not checked: `require` does not hold at F = I", {}, ""};
+  if (!state)
+    return Finding{
+        Severity::warning, "moduli", fmt::format("not checked: `require` does not hold {}", where(energy)), {}, ""};
   state->at("E") = {Rational(1)};
   state->at("nu") = {Rational(1) / 4};
   const auto jet = derivatives(energy, case_name, numbers_at(energy, *state));
@@ -262,11 +272,12 @@ std::optional<Finding> check_moduli(const Energy& energy, const std::string& cas
       if (std::fabs(found - expected) < 1e-12) continue;
       return Finding{
           Severity::error, "moduli",
-          fmt::format("with E = 1 Pa and nu = 0.25 the second derivative by {} and {} at F = I is {:.4g} Pa, "
+          fmt::format("with E = 1 Pa and nu = 0.25 the second derivative by {} and {} {} is {:.4g} Pa, "
                       "expected {:.4g} Pa{}; give the params other names, or form the value from mu = E/(2*(1 + nu)) "
                       "and la = E*nu/((1 + nu)*(1 - 2*nu))",
-                      component_name(energy, j), component_name(energy, i), found, expected, moduli_text(jet)),
-          start_of(*energy.value), state_text(energy, *state)};
+                      component_name(energy, j), component_name(energy, i), where(energy), found, expected,
+                      moduli_text(jet)),
+          start_of(*energy.value), told(energy, case_name, *state)};
     }
   }
   return good;
@@ -299,13 +310,13 @@ std::optional<Finding> check_stable_at_rest(const Energy& energy, const std::str
       return Finding{Severity::error, "stable at rest",
                      fmt::format("the stiffness is not finite {}, because {} or its derivatives are not", where(energy),
                                  to_text(part == nullptr ? *energy.value : *part)),
-                     start_of(part == nullptr ? *energy.value : *part), state_text(energy, *state)};
+                     start_of(part == nullptr ? *energy.value : *part), told(energy, case_name, *state)};
     }
     const double scale = std::max(std::fabs(eigenvalues.front()), std::fabs(eigenvalues.back()));
     const double here = scale > 0 ? eigenvalues.front() / scale : 0;
     if (here < weakest) {
       weakest = here;
-      weakest_state = state_text(energy, *state);
+      weakest_state = told(energy, case_name, *state);
     }
   }
   const bool density = energy.kind == Energy::Kind::density;
