@@ -246,10 +246,12 @@ NewtonResult TimeStepper::solve(const Solve& stage, Eigen::Matrix3Xd& x, StepRec
 
   NewtonResult result;
   int solves = 0;
+  double foretold = 0;  // by the first steps of all solves
   bool again = true;
   while (again) {
     result = newton_.minimise(*system_, x, newton, contact_);
     ++solves;
+    result.first_step_speed = foretold += result.first_step_speed;
     add_solve(result, record);
     if (contact_ && contact_->has_friction()) ++record.friction_iterations;
     take_balance(x);
