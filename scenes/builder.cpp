@@ -132,7 +132,7 @@ constexpr double least_part = 1e-3;  // of dt: the shortest step of load, unless
 StepOptions step_options(const Scene& scene) {
   StepOptions out;
   out.dt = scene.time.dt;
-  out.integrator = scene.time.integrator;
+  out.integrator = scene.integrator();
   out.tolerance = tolerance(scene);
   out.max_iterations = scene.solver.max_iterations;
   out.friction_lag_iterations = scene.solver.friction_iterations;

@@ -126,6 +126,7 @@ class Output {
 RunSummary summary_of_start(const Scene& scene, const BuiltScene& built, double start_energy) {
   RunSummary out;
   out.scene = scene.file;
+  out.integrator = scene.integrator();
   out.threads = omp_get_max_threads();
   out.vertices = vertices_of(built.bodies);
   for (const Body& body : built.bodies) out.cells += body.mesh.cell_count();

@@ -239,11 +239,11 @@ struct SceneGround : Located {
 };
 
 struct TimeSettings : Located {
-  std::string integrator = "implicit_euler";
-  double dt = 0;                    // s
-  std::optional<double> min_dt;     // s; absent: of the integrator
-  std::optional<double> tolerance;  // m; absent: dt does not follow the error
-  std::optional<double> end;        // s; exactly one of `end` and `steps`
+  std::string integrator = "automatic";  // or one of integrator_names()
+  double dt = 0;                         // s
+  std::optional<double> min_dt;          // s; absent: of the integrator
+  std::optional<double> tolerance;       // m; absent: dt does not follow the error
+  std::optional<double> end;             // s; exactly one of `end` and `steps`
   std::optional<int> steps;
 
   bool quasi_static() const { return integrator == "quasi_static"; }
@@ -285,6 +285,13 @@ struct Scene : Located {
   std::vector<SceneGround> grounds;
   std::vector<SceneProbe> probes;
   std::optional<ContactSettings> contact;  // absent: surfaces do not collide, only grounds act
+
+  // One of integrator_names(). Automatic is bdf2 where nothing may touch, as it costs what implicit Euler does and its
+  // error goes with dt^2, and implicit Euler where things may: the others create energy in hard impacts.
+  std::string integrator() const {
+    if (time.integrator != "automatic") return time.integrator;
+    return contact || !grounds.empty() ? "implicit_euler" : "bdf2";
+  }
 };
 
 }  // namespace ergon

@@ -63,6 +63,7 @@ std::string to_json(const RunSummary& s) {
   json["scene"] = s.scene;
   json["finished"] = s.failure.empty() && !s.stopped;
   json["failure"] = s.failure.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(s.failure);
+  json["integrator"] = s.integrator;
   json["threads"] = s.threads;
   json["vertices"] = s.vertices;
   json["cells"] = s.cells;

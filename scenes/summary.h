@@ -15,6 +15,7 @@ struct RunSummary {
   std::string scene;     // file
   std::string failure;   // empty when all steps were taken
   bool stopped = false;  // by whoever asked for the run, before its end
+  std::string integrator;
   int threads = 0;
   int vertices = 0;
   int cells = 0;

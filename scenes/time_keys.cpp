@@ -7,6 +7,16 @@ namespace ergon {
 
 using namespace key_ranges;
 
+namespace {
+
+std::vector<std::string> integrators() {
+  std::vector<std::string> out = integrator_names();
+  out.insert(out.begin(), "automatic");
+  return out;
+}
+
+}  // namespace
+
 Section<TimeSettings> time_section() {
   using T = TimeSettings;
   Section<T> out{"[time]", "How long to simulate.", {}, {}, {}};
@@ -23,8 +33,11 @@ Section<TimeSettings> time_section() {
       number_key("end", &T::end, "s", positive, Need::optional, "simulated time", "give `end` or `steps`"),
       integer_key("steps", &T::steps, from_1, Need::optional, "number of time steps", "give `end` or `steps`"),
       choice_key(
-          "integrator", &T::integrator, integrator_names(),
-          "of first order implicit_euler, which damps; of second bdf2 (one solve per step), sdirk2 and tr_bdf2 (two), "
+          "integrator", &T::integrator, integrators(),
+          "automatic: bdf2 in a scene where nothing may touch (no [contact], no [[ground]]), else implicit_euler, "
+          "which "
+          "alone creates no energy in hard impacts; of first order implicit_euler, which damps; of second bdf2 (one "
+          "solve per step), sdirk2 and tr_bdf2 (two), "
           "which damp little, newmark, generalised_alpha and midpoint, which damp next to nothing; midpoint and "
           "generalised_alpha go on beyond the state they solve for, which contact may forbid: the step then fails; "
           "quasi_static knows no inertia: each step ends in an equilibrium, of loads (gravity, [[object.load]], and "

@@ -13,11 +13,13 @@ struct StressOutcome {
   std::string fault;  // "" where the case holds
   long steps = 0;     // taken
   long newton_iterations = 0;
-  long unconverged = 0;       // steps
-  double smallest_gap = 0;    // m; +inf where nothing came near
-  double energy_created = 0;  // J, largest rise of energy in a step that no work, load or change of stiffness explains
-  double energy = 0;          // J, largest sum of kinetic and stored energies, to compare it with
-  double residual = 0;        // J, largest of the budget
+  long unconverged = 0;     // steps
+  double smallest_gap = 0;  // m; +inf where nothing came near
+  // J, largest rise of energy that no work, load or change of stiffness explains: in a step of implicit Euler; of other
+  // integrators since the start, as in what they know of the last step they hold energy that a step may give back.
+  double energy_created = 0;
+  double energy = 0;    // J, largest sum of kinetic and stored energies, to compare it with
+  double residual = 0;  // J, largest of the budget
   double seconds = 0;
 };
 

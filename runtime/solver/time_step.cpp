@@ -111,6 +111,7 @@ TimeStepper::Solve TimeStepper::stage_of(const State& state, const Stage& stage,
   out.dt = std::sqrt(stage.inertia) * dt;
   out.lag_dt = stage.inertia / stage.rate * dt;
   out.end = state.time + stage.time * dt;
+  out.since = stage.time * dt;
   out.xhat = position(stage.xhat, moments, dt);
   out.xlag = position(xlag_of(stage), moments, dt);
   Eigen::Matrix3Xd goal = state.x;
@@ -179,6 +180,16 @@ bool TimeStepper::finish(const Integrator& integrator, std::vector<Moment>& mome
   return true;
 }
 
+// Each stage begins with what was kept at the start of the step.
+bool TimeStepper::renews(const Potential& potential) { return potential.kernel().n_updates > 0; }
+
+void TimeStepper::lag_dt(int i, double dt) {
+  Potential& potential = system_->potential(i);
+  double& lagged = lagged_dt_[static_cast<size_t>(i)];
+  if (lagged != dt && has_lag(potential.kernel(), "dt")) potential.set_lag("dt", {dt});
+  lagged = dt;
+}
+
 void TimeStepper::set_lags(const Solve& stage) {
   if (load_end_ > 0) set_loads(load_factor(stage.end));
   lagged_dt_.resize(static_cast<size_t>(system_->potential_count()), 0);
@@ -186,10 +197,7 @@ void TimeStepper::set_lags(const Solve& stage) {
     Potential& potential = system_->potential(i);
     potential.set_time(stage.end);
     if (contact_ && contact_->owns(i)) continue;
-    const double dt = has_vector_lag(potential, "hat") ? stage.dt : stage.lag_dt;
-    double& lagged_dt = lagged_dt_[static_cast<size_t>(i)];
-    if (lagged_dt != dt && has_lag(potential.kernel(), "dt")) potential.set_lag("dt", {dt});
-    lagged_dt = dt;
+    lag_dt(i, has_vector_lag(potential, "hat") ? stage.dt : renews(potential) ? stage.since : stage.lag_dt);
     if (potential.kernel().density && has_lag(potential.kernel(), "Flag"))
       potential.set_lag("Flag", potential.deformation(stage.xlag));
     if (potential.kernel().density || !potential.kernel().point_names) continue;
@@ -203,7 +211,7 @@ void TimeStepper::set_lags(const Solve& stage) {
 
 // With what the step starts from as lags.
 void TimeStepper::lag_stiffness(const State& state) {
-  set_lags({state.x, options_.dt, state.x, options_.dt, state.time});
+  set_lags({state.x, options_.dt, state.x, options_.dt, state.time, options_.dt});
   system_->lag_stiffness(state.x);
 }
 
@@ -307,9 +315,9 @@ ContactForces TimeStepper::forces(const Eigen::Matrix3Xd& x) {
 }
 
 void TimeStepper::advance(State& state, const Moment& end) {
-  const auto renews = [&](int i) { return system_->potential(i).kernel().n_updates > 0; };
   for (int i = 0; i < system_->potential_count(); ++i) {
-    if (!renews(i)) continue;
+    if (!renews(system_->potential(i))) continue;
+    lag_dt(i, options_.dt);
     state.internal.resize(static_cast<size_t>(system_->potential_count()));
     StencilData& internal = state.internal[static_cast<size_t>(i)];
     internal = system_->potential(i).renewed(end.x);

@@ -171,6 +171,7 @@ class TimeStepper {
     Eigen::Matrix3Xd xlag;  // m, from which motion is counted
     double lag_dt = 0;      // s, that it takes
     double end = 0;         // s, time at its end
+    double since = 0;       // s, from the start of the step to it: what energies that renew themselves live through
   };
   // Forces on the vertices (N, downhill is minus these) and accelerations that a solve balanced, and the part of the
   // step's displacement (m) that was made with them.
@@ -199,6 +200,8 @@ class TimeStepper {
   bool constraints_give(const Eigen::Matrix3Xd& x, int solves, NewtonResult& result, StepRecord& record);
   void lag_stiffness(const State& state);
   void set_internal(const State& state);
+  static bool renews(const Potential& potential);
+  void lag_dt(int potential, double dt);
   void begin_contact(const Solve& stage, const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& v, StepRecord& record);
   NewtonResult solve(const Solve& stage, Eigen::Matrix3Xd& x, StepRecord& record);
   ContactForces forces(const Eigen::Matrix3Xd& x);

@@ -70,7 +70,7 @@ double TimeStepper::kinetic_energy(const Eigen::Matrix3Xd& v) const {
 // Lags and contact of a state that nothing was stepped to.
 void TimeStepper::prepare_at(const State& state) {
   set_internal(state);
-  set_lags({state.x, options_.dt, state.x, options_.dt, state.time});
+  set_lags({state.x, options_.dt, state.x, options_.dt, state.time, options_.dt});
   if (!contact_) return;
   contact_->begin_step(state.x, state.v, options_.dt);
   contact_->lag_friction(state.x, state.x, options_.dt);

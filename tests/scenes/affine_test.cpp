@@ -16,7 +16,8 @@ std::string box(const std::string& name, const std::string& keys) {
 }
 
 std::string settings(const std::string& gravity, double dt, int steps) {
-  return "gravity = " + gravity + "\n[time]\ndt = " + std::to_string(dt) + "\nsteps = " + std::to_string(steps) + "\n";
+  return "gravity = " + gravity + "\n[time]\nintegrator = \"implicit_euler\"\ndt = " + std::to_string(dt) +
+         "\nsteps = " + std::to_string(steps) + "\n";
 }
 
 Eigen::Vector3d mean(const Eigen::Matrix3Xd& x, const Body& body) {

@@ -14,7 +14,7 @@
 namespace ergon {
 namespace {
 
-const std::string time_part = "[time]\ndt = 0.01\nsteps = 2\n";
+const std::string time_part = "[time]\nintegrator = \"implicit_euler\"\ndt = 0.01\nsteps = 2\n";
 const std::string block = R"(
 [[object]]
 name = "block"
@@ -61,6 +61,18 @@ TEST(builder, asks_only_for_the_kernels_that_are_used_and_says_what_is_left_out)
 }
 
 // Drag takes what it says from a body that flies free of other forces; a dashpot between its points takes nothing.
+TEST(builder, takes_the_integrator_that_the_scene_needs) {
+  const auto integrator = [](const std::string& more) {
+    return build_text("[time]\ndt = 0.01\nsteps = 2\n" + more + block).step.integrator;
+  };
+  EXPECT_EQ(integrator(""), "bdf2");
+  EXPECT_EQ(integrator("integrator = \"automatic\"\n"), "bdf2");
+  EXPECT_EQ(integrator("integrator = \"newmark\"\n"), "newmark");
+  EXPECT_EQ(integrator("[contact]\n"), "implicit_euler");
+  EXPECT_EQ(integrator("[[ground]]\nheight = -1\n"), "implicit_euler");
+  EXPECT_EQ(integrator("integrator = \"bdf2\"\n[contact]\n"), "bdf2");
+}
+
 TEST(builder, damping_takes_its_lags_from_the_step) {
   const std::string law = "energy = [{ law = \"stable_neo_hookean\", E = \"0.5 MPa\", nu = 0.4 }";
   std::string damped = block;

@@ -89,6 +89,7 @@ TEST(damping, by_mass_slows_affine_bodies) {
   const FinishedScene scene = finish_text(R"(
 gravity = [0, 0, 0]
 [time]
+integrator = "implicit_euler"
 dt = 0.01
 steps = 10
 [solver]

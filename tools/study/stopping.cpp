@@ -43,7 +43,7 @@ std::vector<Base> bases() {
   return {base("cantilever", "hex20", "[8, 1, 1]", "[16, 2, 2]", 0.00625),
           base("column", "hex20", "[2, 2, 4]", "[4, 4, 8]", 0.0025),
           base("cloth", "quad9", "[4, 4, 1]", "[8, 8, 1]", 0.00625),
-          base("bounce", "hex20", "[2, 2, 2]", "[4, 4, 4]", 0.000625),
+          base("impact", "hex20", "[2, 2, 2]", "[4, 4, 4]", 0.000625),
           base("buckling", "hex20", "[1, 1, 16]", "[2, 2, 32]", 0.00625),
           base("slide", "hex20", "[2, 2, 1]", "[4, 4, 2]", 0.0025)};
 }
@@ -84,7 +84,7 @@ void add_friction(std::vector<StoppingSweep>& out) {
 void add_barrier(std::vector<StoppingSweep>& out) {
   for (const Base& base : bases()) {
     const bool slides = base.problem == std::string("slide");
-    if (!slides && base.problem != std::string("bounce")) continue;
+    if (!slides && base.problem != std::string("impact")) continue;
     StoppingSweep reach = sweep_of("barrier", base, "ground.dhat (m)");
     reach.values = values_of("ground.0.dhat", {"0.01", "0.003", "0.001", "0.0003", "0.0001"}, "0.001");
     reach.strict = {"ground.0.dhat=3e-5"};
