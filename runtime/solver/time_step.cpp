@@ -71,11 +71,15 @@ StepRecord TimeStepper::step(State& state) {
   return record;
 }
 
-// A two-step method knows no last step at the first, and none that was made before a jump of the state.
-Integrator TimeStepper::integrator_for(const State& state) const {
+// A two-step method knows no last step at the first, and none that was made before a jump of the state. Where the
+// incremental potential is not convex at the start, as of a body that is pressed flat, dt does not resolve what comes
+// next, and implicit Euler goes down in energy all the same.
+Integrator TimeStepper::integrator_for(const State& state) {
   const bool first = state.last_dt == 0;
   const Integrator integrator = integrator_named(options_.integrator, first ? 1 : options_.dt / state.last_dt);
-  return integrator.two_step && first ? integrator_named("sdirk2") : integrator;
+  if (!integrator.two_step || !first) return integrator;
+  prepare_at(state);
+  return integrator_named(newton_.is_minimum(*system_, state.x) ? "sdirk2" : "implicit_euler");
 }
 
 std::vector<Moment> TimeStepper::known_moments(const State& state, const Integrator& integrator) {

@@ -178,7 +178,7 @@ class TimeStepper {
   struct Balance {
     Eigen::Matrix3Xd stored, friction, damping, a, way;
   };
-  Integrator integrator_for(const State& state) const;
+  Integrator integrator_for(const State& state);
   std::vector<Moment> known_moments(const State& state, const Integrator& integrator);
   Solve stage_of(const State& state, const Stage& stage, const std::vector<Moment>& moments) const;
   Moment moment_of(const State& state, const Stage& stage, const std::vector<Moment>& moments,
