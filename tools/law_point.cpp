@@ -22,8 +22,8 @@ bool positive(const std::vector<Jet<double>>& margins) {
 double usual_value(const Symbol& symbol) {
   const Range& range = symbol.range;
   const bool place = symbol.unit == parse_unit("m").unit, vector = !symbol.shape.scalar();
-  const bool stress = symbol.unit == parse_unit("Pa").unit;
-  if (range == Range{} && (place || (!vector && !stress && !symbol.unit.dimensionless()))) return 0;
+  const bool amount = symbol.unit == parse_unit("Pa").unit || symbol.unit == parse_unit("kg").unit;
+  if (range == Range{} && (place || (!vector && !amount && !symbol.unit.dimensionless()))) return 0;
   if (symbol.name == "nu" && range.contains(0.3)) return 0.3;
   if (symbol.name == "K" && range.contains(100)) return 100;
   if (std::isfinite(range.lower) && std::isfinite(range.upper)) return (range.lower + range.upper) / 2;

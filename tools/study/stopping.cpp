@@ -56,7 +56,7 @@ void add_tolerance(std::vector<StoppingSweep>& out) {
   for (const Base& base : bases()) {
     StoppingSweep sweep = sweep_of("tolerance", base, "solver.tolerance (m/s)");
     sweep.values = values_of("solver.tolerance", {"1", "0.1", "0.01", "0.001", "0.0001", "1e-05", "1e-06"}, "0.0001");
-    sweep.strict = {"solver.tolerance=1e-8", "solver.friction_iterations=2"};
+    sweep.strict = {"solver.tolerance=1e-7", "solver.friction_iterations=2"};
     out.push_back(std::move(sweep));
   }
 }

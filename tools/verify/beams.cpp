@@ -33,7 +33,7 @@ Beam make_beam(const BeamForm& form) {
   Mesh made = beam_mesh(form, wanted);
   const double width = dimension == 2 ? made.X.row(1).maxCoeff() : wanted;
   const double young = 12 / (width * std::pow(form.height, 3));
-  Beam out{Model(std::move(made)), {}, {}, "", "", ""};
+  Beam out{Model(std::move(made)), {}, {}, {}, "", "", ""};
   Model& model = out.model;
   const Mesh& mesh = model.mesh();
   if (dimension == 3) {
@@ -62,7 +62,8 @@ Beam make_beam(const BeamForm& form) {
   model.hold(vertices_where(mesh, [&](const Eigen::Vector3d& X) { return X[0] < held; }));
   out.tip = load_shares(mesh, vertices_where(mesh, [](const Eigen::Vector3d& X) { return X[0] > 1 - 1e-9; })).shares;
   const double section = dimension == 3 ? width * form.height : dimension == 2 ? width : 1;
-  out.length = mass_matrix(mesh, 1 / section);
+  out.mass = mass_matrix(mesh, 1 / section);
+  out.length = out.mass * Eigen::VectorXd::Ones(out.mass.cols());
   return out;
 }
 

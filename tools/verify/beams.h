@@ -18,8 +18,9 @@ struct BeamForm {
 
 struct Beam {
   Model model;
-  Eigen::VectorXd tip;         // share of each vertex in what is at the free end
-  CoupledMass::Matrix length;  // m, the mass matrix of 1 kg/m
+  Eigen::VectorXd tip;       // share of each vertex in what is at the free end
+  Eigen::VectorXd length;    // m, share of each vertex in what is spread over the length
+  CoupledMass::Matrix mass;  // kg, of 1 kg/m
   std::string element, mesh;
   std::string limits;  // why this form does not reach references; empty where it does
 
