@@ -165,7 +165,7 @@ std::vector<Plan> plans() {
        {"hex27", "[5, 5, 5]", "tr_bdf2", 0.005 / 32, 1e-6},
        {"hex27", "[4, 4, 4]", "bdf2", 0.005 / 64, 1e-6},
        {"hex27", "[2, 2, 2]", "bdf2", 0.005 / 8},
-       {},
+       {{"hex27", "[4, 4, 4]"}},
        {}},
       {"buckling",
        "a slender column gives way under its weight",
