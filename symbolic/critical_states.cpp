@@ -109,7 +109,7 @@ std::pair<Energy, CriticalTarget> alone(const Energy& energy, const CriticalTarg
       Expression{Expression::Kind::subtract, "", {condition.right, condition.left}, condition.place, {}, {}});
   Energy margin = sliced(energy, both);
   (active ? margin.active : margin.require).push_back(condition);
-  return {std::move(margin), {target.kind, {}, 0}};
+  return {std::move(margin), CriticalTarget{target.kind, {}, 0}};
 }
 
 bool within_ranges(const Energy& energy, const ExactInputs& inputs) {
