@@ -25,7 +25,7 @@ std::vector<Finding> check_case(const Energy& energy, const std::string& name) {
   add(check_load(energy, name));
   const Energy natural = seen_from_natural(energy);
   for (const auto& check : {check_rest, check_moduli, check_stable_at_rest, check_range}) add(check(natural, name));
-  for (const auto& check : {check_collapse, check_inversion}) add(check(energy, name));
+  for (const auto& check : {check_symmetry, check_collapse, check_inversion}) add(check(energy, name));
   return findings;
 }
 

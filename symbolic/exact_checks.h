@@ -38,6 +38,9 @@ std::optional<Finding> check_stable_at_rest(const Energy& energy, const std::str
 // energy away: between a hundredth and a hundredfold of its length.
 std::optional<Finding> check_range(const Energy& energy, const std::string& case_name);
 
+// By which turns of its shape at rest a solid or membrane keeps its value (symbolic/symmetry.h).
+std::optional<Finding> check_symmetry(const Energy& energy, const std::string& case_name);
+
 // Whether the value of a density grows without bound as it collapses along an axis.
 std::optional<Finding> check_collapse(const Energy& energy, const std::string& case_name);
 
