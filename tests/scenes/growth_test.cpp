@@ -1,5 +1,6 @@
 // Bodies that heat or moisture makes larger, and muscle that contracts: what has no stress is known exactly.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -74,6 +75,70 @@ energy = [{ law = "thermal_neo_hookean", E = 1e6, nu = 0, alpha = 1e-5, dT = { r
   for (int v = 0; v < X.cols(); ++v)
     if (X(0, v) > length - 1e-9 && X(2, v) < 1e-9) deflection = end.end.x(2, v);
   EXPECT_NEAR(deflection, 3 * length * length / (4 * h) * strain, 0.01 * deflection);
+}
+
+// A free sheet of 0.2 m by 0.1 m, held by as little as is needed, with one law of bending beside its membrane. Where
+// its natural curvature is small and alike in all directions it becomes the paraboloid of that curvature, which a flat
+// membrane does not resist: the curvature that fits its vertices best, and the largest distance from it over the
+// height.
+struct Curled {
+  double curvature = 0, misfit = 0;
+};
+
+Curled curled(const std::string& bending, double growth, const std::string& element_keys) {
+  const FinishedScene end = finish_text(scene(R"(
+[[object]]
+name = "sheet"
+element = "tri3"
+box = { size = [0.2, 0.1, 0.1], )" + element_keys +
+                                              R"( }
+density = 1000
+thickness = 0.01
+fixed = [{ max = [0, 0, inf] }, { min = [0.2, -inf, -inf], max = [inf, 0, inf], axes = "yz" }, { min = [-inf, 0.1, -inf], max = [0, inf, inf], axes = "z" }]
+energy = [{ law = "growing_membrane", E = 1e6, nu = 0.3, growth = )" +
+                                              fmt::format("{:.17g}", growth) + " },\n          " + bending + "]\n"));
+  EXPECT_EQ(end.summary.failure, "");
+  const Eigen::Matrix3Xd& X = end.built.start.x;
+  double fit = 0, squares = 0, misfit = 0, height = 0;
+  const auto bulge = [&](int v) { return (X(0, v) * (0.2 - X(0, v)) + X(1, v) * (0.1 - X(1, v))) / 2; };
+  for (int v = 0; v < X.cols(); ++v) {
+    fit += bulge(v) * end.end.x(2, v);
+    squares += bulge(v) * bulge(v);
+  }
+  const double curvature = fit / squares;
+  for (int v = 0; v < X.cols(); ++v) {
+    misfit = std::max(misfit, std::abs(end.end.x(2, v) - curvature * bulge(v)));
+    height = std::max(height, std::abs(end.end.x(2, v)));
+  }
+  return {curvature, misfit / height};
+}
+
+// Of two layers, m the ratio of their thicknesses h1/h2 and n that of their moduli, h the sum of the thicknesses:
+// 6*(growth1 - growth2)*(1 + m)^2/(h*(3*(1 + m)^2 + (1 + m*n)*(m^2 + 1/(m*n)))). Timoshenko 1925, Analysis of Bi-Metal
+// Thermostats, J. Opt. Soc. Am. 11.
+TEST(growth, shells_of_two_layers_curl_as_timoshenko_says) {
+  for (const auto& [m, n] : {std::pair(1.0, 1.0), std::pair(0.25, 8.0), std::pair(3.0, 0.2)}) {
+    const double h = 0.01, h2 = h / (1 + m), h1 = h - h2, growth1 = 1 + 3e-5, growth2 = 1 - 2e-5;
+    const double expected = 6 * (growth1 - growth2) * (1 + m) * (1 + m) /
+                            (h * (3 * (1 + m) * (1 + m) + (1 + m * n) * (m * m + 1 / (m * n))));
+    const double mean = (n * h1 * growth1 + h2 * growth2) / (n * h1 + h2);
+    const std::string law = fmt::format(
+        "{{ law = \"bilayer_bending\", E1 = {:.17g}, E2 = 1e6, nu = 0.3, h1 = {:.17g}, h2 = {:.17g}, growth1 = "
+        "{:.17g}, "
+        "growth2 = {:.17g} }}",
+        n * 1e6, h1, h2, growth1, growth2);
+    const Curled found = curled(law, mean, "cells = [16, 8, 1]");
+    EXPECT_NEAR(found.curvature, expected, 2e-5 * expected) << m << " " << n;
+    EXPECT_LT(found.misfit, 1e-6);
+  }
+}
+
+TEST(growth, hinges_curl_as_far_as_their_curvature_says) {
+  const Curled found =
+      curled("{ law = \"curled_hinge\", k = 1, curvature = { formula = \"c*t/T\", c = \"1e-3 m^-1\", T = \"1 s\" } }",
+             1, "cells = [12, 5, 1]");
+  EXPECT_NEAR(found.curvature, 1e-3, 1e-10);
+  EXPECT_LT(found.misfit, 1e-6);
 }
 
 // Fibres along x that are active by a table in time: the block shortens until E/2*stretch*(stretch^2 - 1) + activation*
