@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Checks of the source tree: format, include directions, file lengths, names of types, shell scripts, paths of one machine.
+# Checks of the source tree: format, include directions, file lengths, names of types, names of laws, shell scripts, paths of
+# one machine.
 #   --tidy   clang-tidy as well, over all translation units of the program (minutes; needs a configured build folder)
 # Prints "passed: CHECK" or "failed: CHECK" for each, what is wrong above it, and exits with 1 when one failed.
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
@@ -11,6 +12,7 @@ for folder in symbolic codegen runtime scenes tools tests; do
 done
 mapfile -t sources < <(find "${folders[@]}" -name '*.cpp' -o -name '*.h' | sort)
 [[ ${#sources[@]} -gt 0 ]] || fail "no sources in $PWD"
+mapfile -t engine < <(printf '%s\n' "${sources[@]}" | grep -E '^(symbolic|codegen|runtime|scenes)/')
 
 format() { printf '%s\0' "${sources[@]}" | xargs -0 -P "$cores" -n 16 clang-format --dry-run -Werror --style=file; }
 
@@ -75,6 +77,62 @@ type_names() {
     END { exit bad }' "${sources[@]}"
 }
 
+# No law of the catalogue has code of its own: its name is no text, nor a word in one, of what makes or runs kernels. Distances
+# (energies/contact/distances) are the geometry that contact tells apart. Where a name stands all the same, and why:
+named_laws='
+  scenes/builder.cpp: inertia gravity drag dead_load affine_orthogonality: stated by keys that name no law
+  scenes/build_mass.cpp: inertia gravity drag: the same
+  scenes/build_affine.cpp: affine_orthogonality: the same
+  scenes/build_contact.cpp: log_barrier friction friction_secant: the same; the ground has this barrier
+  scenes/scene_keys.cpp: gravity affine_orthogonality: the key, and its help
+  scenes/scene.h: log_barrier: the default of `barrier` in [contact]
+  scenes/scene_reference.cpp: stable_neo_hookean: the scene that is shown
+  scenes/catalogue.cpp: log_barrier: an example in a message
+  runtime/contact/pair_stiffness.cpp: log_barrier: an example in a message
+  runtime/contact/ground.cpp: friction: the word, in a message
+  runtime/output/report.cpp: friction: the word, in a report
+  scenes/run.cpp: friction: the word, in a report
+'
+law_names() {
+  local laws
+  laws="$(find energies -name '*.energy' -not -path '*/distances/*' 2>/dev/null | sed 's|.*/||; s|\.energy$||' | sort)"
+  [[ -n $laws ]] || return 0
+  awk -v laws="$laws" -v listed="$named_laws" '
+    BEGIN {
+      for (n = split(laws, name, "\n"); n > 0; --n) law[name[n]] = 1
+      for (n = split(listed, line, "\n"); n > 0; --n) {
+        gsub(/^ +/, "", line[n]); split(line[n], part, ": *")
+        for (w = split(part[2], word, " "); w > 0; --w)
+          if (word[w] in law) may[part[1], word[w]] = 1
+      }
+    }
+    FNR == 1 { seen[FILENAME] = 1 }
+    /^[ \t]*(\/\/|#[ \t]*include)/ { next }
+    {
+      # A name of one word is looked for as a whole text, or the part before a colon, for many are words of English too.
+      for (rest = $0; match(rest, /"([^"\\]|\\.)*"/); rest = substr(rest, RSTART + RLENGTH)) {
+        text = substr(rest, RSTART + 1, RLENGTH - 2)
+        whole = text; sub(/:.*/, "", whole)
+        n = split(text, word, /[^A-Za-z0-9_]+/)
+        for (w = 0; w <= n; ++w) {
+          found = w == 0 ? whole : word[w]
+          if (!(found in law) || (w > 0 && found !~ /_/)) continue
+          if ((FILENAME, found) in may) { used[FILENAME, found] = 1; continue }
+          printf "%s:%d: \"%s\" is a law of the catalogue, which needs no code of its own; what is particular to it belongs ", FILENAME, FNR, found
+          print "into its file, or into a word of the language"; bad = 1; break
+        }
+      }
+    }
+    END {
+      for (pair in may) {
+        split(pair, part, SUBSEP)
+        if (!(part[1] in seen) || (pair in used)) continue
+        printf "%s: does not name the law \"%s\" any more; take it off the list in tools/checks.sh\n", part[1], part[2]; bad = 1
+      }
+      exit bad
+    }' "${engine[@]}"
+}
+
 shell_scripts() {
   local script bad=0
   while IFS= read -r script; do
@@ -107,7 +165,7 @@ tidy() {
     xargs -0 -P "$cores" -n 1 clang-tidy -p "$build/tidy" --quiet 2>/dev/null
 }
 
-checks=(format include_directions file_lengths type_names shell_scripts host_paths)
+checks=(format include_directions file_lengths type_names law_names shell_scripts host_paths)
 case "${1-}" in
   --tidy) checks+=(tidy) ;;
   '') ;;

@@ -34,7 +34,7 @@ TEST_F(Checks, AGoodTreePasses) {
   EXPECT_EQ(answer.code, 0) << answer.out << answer.err;
   EXPECT_EQ(answer.out,
             "passed: format\npassed: include directions\npassed: file lengths\npassed: type names\n"
-            "passed: shell scripts\npassed: host paths\n");
+            "passed: law names\npassed: shell scripts\npassed: host paths\n");
 }
 
 TEST_F(Checks, RuntimeKnowsNothingOfTheCompiler) {
@@ -70,6 +70,29 @@ TEST_F(Checks, TwoTypesOfOneNameAreOneToTheLinker) {
   EXPECT_EQ(checks().code, 0) << checks().out;
   write("tests/scenes/g.h", "#pragma once\nnamespace ergon {\n\nenum class Twice { a };\n\n}  // namespace ergon\n");
   expect_found("type names", "tests/scenes/g.h:4: ergon::Twice is also the name of a type in tests/scenes/f.cpp:3");
+}
+
+TEST_F(Checks, NoLawHasCodeOfItsOwn) {
+  for (const char* law : {"solids/my_rubber", "loads/pressure", "bodies/gravity", "contact/distances/rope"})
+    write(std::string("energies/") + law + ".energy", "# A law.\n");
+  write("scenes/a.cpp",
+        "// \"my_rubber\" is a law.\nconst char* a = \"that of pressure; a rope\";\nconst char* b = \"rope\";\n");
+  EXPECT_EQ(checks().code, 0) << checks().out;
+  write("scenes/a.cpp", "int x;\nbool a = name == \"pressure\";\n");
+  expect_found("law names",
+               "scenes/a.cpp:2: \"pressure\" is a law of the catalogue, which needs no code of its own; what is "
+               "particular to it belongs into its file, or into a word of the language\n");
+  write("scenes/a.cpp", "bool a = name == \"pressure:point_point\";\n");
+  expect_found("law names", "scenes/a.cpp:1: \"pressure\" is a law");
+  write("scenes/a.cpp", "const char* a = \"as my_rubber does\";\n");
+  expect_found("law names", "scenes/a.cpp:1: \"my_rubber\" is a law");
+  std::filesystem::remove(folder / "scenes/a.cpp");
+  write("scenes/builder.cpp", "const char* a = \"gravity\";\n");
+  EXPECT_EQ(checks().code, 0) << checks().out;
+  write("scenes/builder.cpp", "\n");
+  expect_found(
+      "law names",
+      "scenes/builder.cpp: does not name the law \"gravity\" any more; take it off the list in tools/checks.sh\n");
 }
 
 TEST_F(Checks, FormatAndLengthAreKept) {
