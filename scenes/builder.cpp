@@ -12,6 +12,7 @@
 #include "runtime/mesh/mesh_tools.h"
 #include "runtime/solver/stopwatch.h"
 #include "scenes/build_affine.h"
+#include "scenes/build_attachment.h"
 #include "scenes/build_contact.h"
 #include "scenes/build_mass.h"
 #include "scenes/build_twist.h"
@@ -66,19 +67,19 @@ WorldLaws world_laws(const Scene& scene, Laws& laws, std::vector<std::string>& s
 }
 
 // What is unsound in the scene's own energies, each checked once.
-std::vector<std::string> law_warnings(const Scene& scene, const std::vector<std::vector<UsedLaw>>& used) {
+std::vector<std::string> law_warnings(const Scene& scene, const std::vector<std::vector<UsedLaw>>& used,
+                                      const std::vector<UsedAttachment>& attachments) {
   std::vector<std::string> out;
   std::set<const Energy*> checked;
-  for (size_t i = 0; i < used.size(); ++i) {
-    for (size_t j = 0; j < used[i].size(); ++j) {
-      const Energy& energy = *used[i][j].declared;
-      const EnergyUse& use = scene.objects[i].energies[j];
-      if (!use.wrote("text") && !use.law.ends_with(".energy")) continue;
-      if (!checked.insert(&energy).second) continue;
-      for (const Finding& finding : check_energy(energy))
-        if (finding.severity >= Severity::warning) out.push_back(to_string(finding));
-    }
-  }
+  const auto check = [&](const Energy& energy, const EnergyUse& use) {
+    if (!use.wrote("text") && !use.law.ends_with(".energy")) return;
+    if (!checked.insert(&energy).second) return;
+    for (const Finding& finding : check_energy(energy))
+      if (finding.severity >= Severity::warning) out.push_back(to_string(finding));
+  };
+  for (size_t i = 0; i < used.size(); ++i)
+    for (size_t j = 0; j < used[i].size(); ++j) check(*used[i][j].declared, scene.objects[i].energies[j]);
+  for (size_t i = 0; i < attachments.size(); ++i) check(*attachments[i].law.declared, scene.attachments[i]);
   return out;
 }
 
@@ -269,12 +270,14 @@ BuiltScene build_scene(const Scene& scene, const Catalogue& catalogue, const Ker
   Laws laws(catalogue, folder);
   UsedKernels kernels;
   std::vector<std::vector<UsedLaw>> used;
+  std::vector<UsedAttachment> attachments;
   WorldLaws world;
   {
     Stopwatch watch(out.seconds.energies);
     for (const SceneObject& object : scene.objects) used.push_back(object_laws(object, laws));
+    attachments = attachment_laws(scene, laws);
     world = world_laws(scene, laws, out.skipped);
-    out.warnings = law_warnings(scene, used);
+    out.warnings = law_warnings(scene, used, attachments);
   }
   {
     Stopwatch watch(out.seconds.meshes);
@@ -286,6 +289,7 @@ BuiltScene build_scene(const Scene& scene, const Catalogue& catalogue, const Ker
       place_fields(scene.objects[i], out.bodies[i], folder, used[i]);
     }
     lay_out(scene, out);
+    join(scene, out, folder, attachments);
     out.probes = probes_of(scene, out);
     check_start(scene, out.bodies);
   }
@@ -293,6 +297,7 @@ BuiltScene build_scene(const Scene& scene, const Catalogue& catalogue, const Ker
     Stopwatch watch(out.seconds.kernels);
     for (const auto& object : used)
       for (const UsedLaw& law : object) kernels.want(law.energy);
+    for (const UsedAttachment& attachment : attachments) kernels.want(attachment.law.energy);
     kernels.want(world.inertia);
     kernels.want(world.gravity);
     kernels.want(world.orthogonality);
@@ -304,6 +309,7 @@ BuiltScene build_scene(const Scene& scene, const Catalogue& catalogue, const Ker
   {
     Stopwatch watch(out.seconds.setup);
     for (size_t i = 0; i < used.size(); ++i) add_object(scene, scene.objects[i], used[i], kernels, i, out);
+    add_attachments(scene, attachments, kernels, out);
     add_world(scene, world, kernels, out);
     if (out.surfaces != nullptr) check_surface_start(scene, out, report);
   }

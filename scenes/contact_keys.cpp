@@ -1,5 +1,7 @@
 #include "scenes/contact_keys.h"
 
+#include <algorithm>
+
 #include "scenes/shape_keys.h"
 
 namespace ergon {
@@ -49,11 +51,13 @@ Section<ShapeKey> shape_section() {
 
 Section<SceneObstacle> obstacle_section() {
   using T = SceneObstacle;
-  Section<T> out{"[[obstacle]]",
-                 "A surface that others collide with and that nothing moves but its script. Needs [contact].",
-                 {},
-                 {},
-                 {}};
+  Section<T> out{
+      "[[obstacle]]",
+      "A surface that others collide with, or are attached to, and that nothing moves but its script. Needs [contact] "
+      "or an [[attachment]] to it.",
+      {},
+      {},
+      {}};
   out.keys =
       shape_keys<T>("mesh file relative to the scene: a surface (.obj, .stl, .ply), open or closed, or cells (.msh)");
   out.keys.push_back(choice_key("element", &T::element, {"hex8", "tri3", "edge2"},
@@ -124,9 +128,13 @@ void check_names(const Scene& scene) {
       throw SourceError(probe.at("object"),
                         fmt::format("there is no object '{}'{}", probe.object, did_you_mean(probe.object, names)));
   }
-  if (!scene.obstacles.empty() && !scene.contact)
-    throw SourceError(scene.obstacles.front().place,
-                      "an obstacle has no effect without contact; add the table [contact]");
+  for (const SceneObstacle& obstacle : scene.obstacles) {
+    const auto is_held_by_it = [&](const SceneAttachment& attachment) { return attachment.to == obstacle.name; };
+    if (!scene.contact && std::none_of(scene.attachments.begin(), scene.attachments.end(), is_held_by_it))
+      throw SourceError(
+          obstacle.place,
+          "an obstacle has no effect without contact; add the table [contact], or attach an object to it");
+  }
   if (!scene.contact) return;
   for (const ContactPair& pair : scene.contact->pairs) {
     for (const auto& [key, name] : {std::pair("first", &pair.first), std::pair("second", &pair.second)})

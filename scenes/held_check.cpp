@@ -4,6 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <numeric>
 
 namespace ergon {
 namespace {
@@ -44,6 +45,23 @@ std::vector<Translation> translations(const BlockMatrix& matrix, const std::vect
   return out;
 }
 
+// By object: the first of those that attachments join it with, which are held as one.
+std::vector<int> groups_of(const Scene& scene) {
+  std::vector<int> out(scene.objects.size());
+  std::iota(out.begin(), out.end(), 0);
+  const auto index = [&](const std::string& name) {
+    const auto is_it = [&](const SceneObject& object) { return object.name == name; };
+    return std::find_if(scene.objects.begin(), scene.objects.end(), is_it) - scene.objects.begin();
+  };
+  for (const SceneAttachment& attachment : scene.attachments) {
+    const auto a = static_cast<size_t>(index(attachment.object)), b = static_cast<size_t>(index(attachment.to));
+    if (b == out.size()) continue;  // an obstacle, or places in space
+    const int from = std::max(out[a], out[b]), to = std::min(out[a], out[b]);
+    std::replace(out.begin(), out.end(), from, to);
+  }
+  return out;
+}
+
 }  // namespace
 
 void check_held(const Scene& scene, BuiltScene& built) {
@@ -52,13 +70,14 @@ void check_held(const Scene& scene, BuiltScene& built) {
   Eigen::Matrix3Xd gradient;
   BlockMatrix matrix;
   system.hessian(built.start.x, Projection::none, gradient, matrix);
+  const std::vector<int> groups = groups_of(scene);
   std::vector<int> object(static_cast<size_t>(matrix.block_rows()), -1);
   for (size_t i = 0; i < scene.objects.size(); ++i) {
     const Body& body = built.bodies[i];
     const int first = body.affine() ? body.first_control : body.first_vertex;
     const int count = body.affine() ? 4 : body.ordered.vertices();
     for (int v = first; v < first + count; ++v)
-      if (system.block_of(v) >= 0) object[static_cast<size_t>(system.block_of(v))] = static_cast<int>(i);
+      if (system.block_of(v) >= 0) object[static_cast<size_t>(system.block_of(v))] = groups[i];
   }
   const std::vector<Translation> sums = translations(matrix, object, scene.objects.size());
   for (size_t i = 0; i < sums.size(); ++i) {
@@ -70,11 +89,12 @@ void check_held(const Scene& scene, BuiltScene& built) {
     way.cwiseAbs().maxCoeff(&axis);
     way *= way[axis] < 0 ? -1 : 1;
     way = (way.array().abs() < 1e-6).select(0, way);
+    const bool joined = std::count(groups.begin(), groups.end(), static_cast<int>(i)) > 1;
     throw SourceError(
         scene.objects[i].place,
-        fmt::format("nothing holds object '{}' along [{:.3g}, {:.3g}, {:.3g}], so that without inertia it has no "
+        fmt::format("nothing holds object '{}'{} along [{:.3g}, {:.3g}, {:.3g}], so that without inertia it has no "
                     "equilibrium; fix some of its vertices, or let it start within dhat of what it is to rest against",
-                    scene.objects[i].name, way[0], way[1], way[2]));
+                    scene.objects[i].name, joined ? " and what is attached to it" : "", way[0], way[1], way[2]));
   }
 }
 

@@ -1,33 +1,17 @@
 #include "scenes/object_laws.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 
 #include "runtime/error.h"
 #include "runtime/mesh/mesh_stencils.h"
 #include "runtime/mesh/rod_frames.h"
+#include "scenes/law_checks.h"
 #include "symbolic/augmented.h"
 
 namespace ergon {
 namespace {
-
-std::string listed(std::vector<std::string> names) {
-  if (names.size() < 2) return fmt::format("{}", fmt::join(names, ""));
-  const std::string last = names.back();
-  names.pop_back();
-  return fmt::format("{} and {}", fmt::join(names, ", "), last);
-}
-
-// X0 is filled in for a dof x0.
-bool is_rest_position(const Energy& energy, const Symbol& rest) {
-  std::string dof = rest.name;
-  dof[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(dof[0])));
-  const Symbol* found = energy.find(dof);
-  return dof != rest.name && found != nullptr && found->role == Role::dof && rest.shape == found->shape;
-}
 
 bool is_mass(const Energy& energy, const Symbol& rest) {
   return energy.geometry == "point" && rest.name == "mass" && rest.shape.scalar() && to_string(rest.unit) == "kg";
@@ -74,34 +58,13 @@ void check_rest_data(const Energy& energy, const Place& place) {
   }
 }
 
-void check_lags(const Energy& energy, const Place& place) {
-  for (const Symbol* lag : energy.with_role(Role::lag)) {
-    const auto of_point = [&](const Symbol* dof) {
-      return lag->name == dof->name + "hat" || lag->name == dof->name + "lag";
-    };
-    if (energy.renews(lag->name)) continue;
-    const std::vector<const Symbol*> dofs = energy.with_role(Role::dof);
-    if (energy.kind == Energy::Kind::density && lag->name != "dt" && lag->name != "Flag")
-      throw SourceError(place,
-                        fmt::format("a scene does not renew the lag '{}' of {}: of a density it knows dt and Flag, "
-                                    "and those that the density renews itself by `update`",
-                                    lag->name, energy.name));
-    if (energy.kind != Energy::Kind::density && lag->name != "dt" && std::none_of(dofs.begin(), dofs.end(), of_point))
-      throw SourceError(place, fmt::format("a scene does not renew the lag '{}' of {}: it knows dt, xhat and xlag",
-                                           lag->name, energy.name));
-  }
-}
-
 void check_supported(const Energy& energy, const Place& place) {
   if (energy.kind == Energy::Kind::density) return check_lags(energy, place);
   const std::vector<std::string> kinds = stencil_kinds();
   if (std::find(kinds.begin(), kinds.end(), energy.geometry) == kinds.end())
     throw SourceError(place, fmt::format("{} is an energy of a {}; an object carries densities, and energies of a {}",
                                          energy.name, energy.geometry, listed(kinds)));
-  if (!energy.cases.empty() || !energy.active.empty())
-    throw SourceError(place, fmt::format("{} acts only under its conditions (case, active), as contact does; an object "
-                                         "carries energies that always act",
-                                         energy.name));
+  check_always_acts(energy, place, "an object");
   check_rest_data(energy, place);
   check_lags(energy, place);
 }
@@ -153,52 +116,41 @@ StencilData rest_data(const Energy& energy, const std::vector<int>& stencils, co
 
 Potential object_potential(const UsedLaw& law, const Kernel& kernel, const Body& body, const BuiltScene& built) {
   const Energy& energy = *law.declared;
-  const auto made = [&] {
-    if (energy.kind == Energy::Kind::density)
-      return Potential::on_mesh(energy.name, kernel, body.ordered, body.first_vertex, law.params, body.quadrature,
-                                law.rest);
-    std::vector<int> stencils = stencils_on_mesh(energy.geometry, body.ordered);
-    // Weights are in proportion to shares of mass, also to negative ones; what is curved needs masses above 0.
-    StencilData rest = rest_data(energy, stencils, body, kernel->zero_hessian ? built.mass_shares() : built.mass);
-    for (int& vertex : stencils) vertex = body.in_scene(vertex);
-    rest.insert(law.rest.begin(), law.rest.end());
-    return Potential::on_stencils(energy.name, kernel, stencils, built.start.x, law.params, rest);
-  };
-  Potential out = made();
-  for (const auto& [name, values] : law.timed) out.follow(name, values);
-  return out;
-}
-
-// Stiffness is that of stored energy.
-void check_damping(const Energy& energy, const EnergyUse& use) {
-  const Symbol* dt = energy.find("dt");
-  if (use.stiffness_damping == 0 || dt == nullptr || dt->role != Role::lag) return;
-  throw SourceError(use.at("stiffness_damping"),
-                    fmt::format("{} damps itself (it has the lag dt) and stores no energy; 'stiffness_damping' belongs "
-                                "to a law that does",
-                                energy.name));
+  if (energy.kind == Energy::Kind::density)
+    return Potential::on_mesh(energy.name, kernel, body.ordered, body.first_vertex, law.params, body.quadrature,
+                              law.rest);
+  std::vector<int> stencils = stencils_on_mesh(energy.geometry, body.ordered);
+  // Weights are in proportion to shares of mass, also to negative ones; what is curved needs masses above 0.
+  StencilData rest = rest_data(energy, stencils, body, kernel->zero_hessian ? built.mass_shares() : built.mass);
+  for (int& vertex : stencils) vertex = body.in_scene(vertex);
+  rest.insert(law.rest.begin(), law.rest.end());
+  return Potential::on_stencils(energy.name, kernel, stencils, built.start.x, law.params, rest);
 }
 
 }  // namespace
+
+UsedLaw used_law(const Energy& energy, const EnergyUse& use, const SceneObject& object, Laws& laws) {
+  check_damping(energy, use);
+  UsedLaw law{&energy,
+              &energy,
+              checked_params(energy, use, object.thickness),
+              law_fields(energy, use, object),
+              {},
+              {},
+              constraint_tolerance(energy, use)};
+  std::vector<std::string> over_mesh;
+  for (const LawField& field : law.fields)
+    if (field.over_mesh()) over_mesh.push_back(field.param->name);
+  law.energy = &laws.vary(energy, over_mesh);
+  return law;
+}
 
 std::vector<UsedLaw> object_laws(const SceneObject& object, Laws& laws) {
   std::vector<UsedLaw> out;
   for (const EnergyUse& use : object.energies) {
     const Energy& energy = laws.get(use);
     check_supported(energy, use.at("law"));
-    check_damping(energy, use);
-    UsedLaw law{&energy,
-                &energy,
-                checked_params(energy, use, object.thickness),
-                law_fields(energy, use, object),
-                {},
-                {},
-                constraint_tolerance(energy, use)};
-    std::vector<std::string> over_mesh;
-    for (const LawField& field : law.fields)
-      if (field.over_mesh()) over_mesh.push_back(field.param->name);
-    law.energy = &laws.vary(energy, over_mesh);
-    out.push_back(std::move(law));
+    out.push_back(used_law(energy, use, object, laws));
   }
   return out;
 }
@@ -224,6 +176,14 @@ void check_geometry(const SceneObject& object, const std::vector<UsedLaw>& laws,
   }
 }
 
+void place_fields(const FieldPlace& place, UsedLaw& law) {
+  const Energy& energy = *law.declared;
+  for (const LawField& field : law.fields) {
+    (field.over_mesh() ? law.rest : law.params)[field.param->name] = field_values(energy, field, place);
+    if (field.in_time()) law.timed[field.param->name] = timed_values(energy, field, place);
+  }
+}
+
 void place_fields(const SceneObject& object, const Body& body, const std::string& folder, std::vector<UsedLaw>& laws) {
   for (UsedLaw& law : laws) {
     if (law.fields.empty()) continue;
@@ -233,33 +193,35 @@ void place_fields(const SceneObject& object, const Body& body, const std::string
             ? sites_of_cells(body.ordered, body.quadrature)
             : sites_of_stencils(body.ordered, places_of(energy, stencils_on_mesh(energy.geometry, body.ordered)),
                                 points_of_stencil(energy.geometry) - twists_of_stencil(energy.geometry));
-    const FieldPlace place{&object, &body, &sites, folder};
-    for (const LawField& field : law.fields) {
-      (field.over_mesh() ? law.rest : law.params)[field.param->name] = field_values(energy, field, place);
-      if (field.in_time()) law.timed[field.param->name] = timed_values(energy, field, place);
-    }
+    place_fields({&object, &body, &sites, folder}, law);
   }
+}
+
+int add_law(const Scene& scene, const EnergyUse& use, const UsedLaw& law, Potential potential, BuiltScene& out) {
+  for (const auto& [name, values] : law.timed) potential.follow(name, values);
+  const int index = out.system->add(std::move(potential));
+  if (use.stiffness_damping > 0) out.system->damp(index, use.stiffness_damping);
+  if (law.constraint_tolerance)
+    out.constraints.push_back(
+        {index, *law.constraint_tolerance, to_string(constraint_of(*law.energy)->expression->unit)});
+  const std::string& param = law.declared->load;
+  if (param.empty()) return index;
+  const auto is_it = [&](const LawField& field) { return field.param->name == param; };
+  const auto field = std::find_if(law.fields.begin(), law.fields.end(), is_it);
+  if (scene.time.quasi_static() && field != law.fields.end())
+    throw SourceError(field->place,
+                      fmt::format("'{}' of {} grows with the load of a quasi-static scene: give it as one "
+                                  "number, and let 'weight' vary",
+                                  param, law.energy->name));
+  if (field == law.fields.end()) add_load(scene, index, param, law.params.at(param), out);
+  return index;
 }
 
 void add_object(const Scene& scene, const SceneObject& object, const std::vector<UsedLaw>& laws,
                 const UsedKernels& kernels, size_t body, BuiltScene& out) {
   for (size_t i = 0; i < laws.size(); ++i) try {
-      const Energy& energy = *laws[i].energy;
-      const int index = out.system->add(object_potential(laws[i], kernels.get(energy), out.bodies[body], out));
-      if (object.energies[i].stiffness_damping > 0) out.system->damp(index, object.energies[i].stiffness_damping);
-      if (const std::optional<double> tolerance = laws[i].constraint_tolerance)
-        out.constraints.push_back({index, *tolerance, to_string(constraint_of(energy)->expression->unit)});
-      const std::string& param = laws[i].declared->load;
-      if (param.empty()) continue;
-      const auto is_it = [&](const LawField& field) { return field.param->name == param; };
-      const auto field = std::find_if(laws[i].fields.begin(), laws[i].fields.end(), is_it);
-      if (scene.time.quasi_static() && field != laws[i].fields.end())
-        throw SourceError(field->place,
-                          fmt::format("'{}' of {} grows with the load of a quasi-static scene: give it as one "
-                                      "number, and let 'weight' vary",
-                                      param, energy.name));
-      if (field != laws[i].fields.end()) continue;
-      add_load(scene, index, param, laws[i].params.at(param), out);
+      const Kernel& kernel = kernels.get(*laws[i].energy);
+      add_law(scene, object.energies[i], laws[i], object_potential(laws[i], kernel, out.bodies[body], out), out);
     } catch (const InputError& bad) {
       throw SourceError(object.energies[i].place, fmt::format("object '{}': {}", object.name, bad.what()));
     }

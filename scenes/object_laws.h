@@ -23,6 +23,16 @@ struct UsedLaw {
   std::optional<double> constraint_tolerance{};
 };
 
+// Checks the params of a law that may be carried by the object's vertices, and makes what varies its data. Throws
+// SourceError at the scene's line.
+UsedLaw used_law(const Energy& energy, const EnergyUse& use, const SceneObject& object, Laws& laws);
+
+// Evaluates what varies, at the sites of `place`. Throws SourceError as field_values does.
+void place_fields(const FieldPlace& place, UsedLaw& law);
+
+// Adds a potential of the law with all that the scene says of it: its index. Throws SourceError at the scene's line.
+int add_law(const Scene& scene, const EnergyUse& use, const UsedLaw& law, Potential potential, BuiltScene& out);
+
 // Reads the laws and their params. Throws SourceError at the scene's line unless objects can carry them: densities, and
 // stencils of the kinds that meshes have, which always act, with rest data (rest positions, sizes of stencils as in
 // runtime/mesh/mesh_stencils.h, the `mass` of a point) and lags (`dt`, `xhat`, `xlag`) that a scene supplies.

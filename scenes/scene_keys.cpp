@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "runtime/mesh/quadrature.h"
+#include "scenes/attachment_keys.h"
 #include "scenes/contact_keys.h"
 #include "scenes/energy_keys.h"
 #include "scenes/shape_keys.h"
@@ -350,11 +351,13 @@ Section<Scene> scene_section() {
       tables_key("obstacle", &T::obstacles, obstacle_section, Need::optional, "surfaces without degrees of freedom"),
       tables_key("ground", &T::grounds, ground_section, Need::optional, "half-spaces"),
       tables_key("probe", &T::probes, probe_section, Need::optional, "vertices whose paths are written"),
+      tables_key("attachment", &T::attachments, attachment_section, Need::optional, "joints of objects"),
       table_key("contact", &T::contact, contact_section, "surfaces collide, with one another and themselves"),
   };
   out.check = [](const std::string&, T& scene) {
     expand_copies(scene);
     check_names(scene);
+    check_attachments(scene);
   };
   return out;
 }

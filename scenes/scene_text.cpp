@@ -56,11 +56,9 @@ struct FileKey {
   std::vector<const char*> path;  // of tables or arrays of tables, then the key
   bool is_law;
 };
-const FileKey file_keys[] = {{{"object", "mesh"}, false},
-                             {{"obstacle", "mesh"}, false},
-                             {{"obstacle", "shape", "mesh"}, false},
-                             {{"object", "energy", "law"}, true},
-                             {{"contact", "barrier"}, true}};
+const FileKey file_keys[] = {
+    {{"object", "mesh"}, false},         {{"obstacle", "mesh"}, false}, {{"obstacle", "shape", "mesh"}, false},
+    {{"object", "energy", "law"}, true}, {{"attachment", "law"}, true}, {{"contact", "barrier"}, true}};
 
 void visit(toml::node& node, const FileKey& key, size_t depth, const std::function<void(toml::node&)>& call) {
   if (toml::array* array = node.as_array()) {

@@ -42,6 +42,19 @@ std::string close_text(const BuiltScene& built, const std::vector<int>& stencil)
   return parts;
 }
 
+// What to do where the two bodies of the first fault are joined: "".
+std::string joined_text(const Scene& scene, const BuiltScene& built, const SurfaceFaults& faults) {
+  const int a = faults.crossing.empty() ? faults.close.front().front() : faults.crossing.front().edge[0];
+  const int b = faults.crossing.empty() ? faults.close.front().back() : faults.crossing.front().triangle[0];
+  const std::string &first = built.bodies[body_of(built, a)].name, &second = built.bodies[body_of(built, b)].name;
+  for (const SceneAttachment& joined : scene.attachments)
+    if ((joined.object == first && joined.to == second) || (joined.object == second && joined.to == first))
+      return fmt::format(
+          "; what is joined may touch by [[contact.pair]] first = \"{}\", second = \"{}\", ignore = true",
+          joined.object, joined.to);
+  return "";
+}
+
 }  // namespace
 
 std::string vertex_text(const BuiltScene& built, int vertex) {
@@ -118,8 +131,8 @@ void check_surface_start(const Scene& scene, const BuiltScene& built, const Faul
                                 : static_cast<const SceneShape&>(scene.obstacles[body - scene.objects.size()]);
   throw SourceError(shape.at("translate"),
                     fmt::format("surfaces collide at the start: {}; move them apart with 'translate', or look at them: "
-                                "ergon run SCENE --report-intersections FILE.vtu",
-                                to_text(faults, built, x)));
+                                "ergon run SCENE --report-intersections FILE.vtu{}",
+                                to_text(faults, built, x), joined_text(scene, built, faults)));
 }
 
 }  // namespace ergon

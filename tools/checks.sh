@@ -84,8 +84,10 @@ named_laws='
   scenes/build_mass.cpp: inertia gravity drag: the same
   scenes/build_affine.cpp: affine_orthogonality: the same
   scenes/build_contact.cpp: log_barrier friction friction_secant: the same; the ground has this barrier
-  scenes/scene_keys.cpp: gravity affine_orthogonality: the key, and its help
+  scenes/scene_keys.cpp: gravity affine_orthogonality attachment: keys, and the help of one
   scenes/scene.h: log_barrier: the default of `barrier` in [contact]
+  scenes/attachment_keys.cpp: attachment joined_points pinned_to_triangle: the defaults of `law` in [[attachment]]
+  scenes/scene_text.cpp: attachment: the key
   scenes/scene_reference.cpp: stable_neo_hookean: the scene that is shown
   scenes/catalogue.cpp: log_barrier: an example in a message
   runtime/contact/pair_stiffness.cpp: log_barrier: an example in a message
