@@ -60,7 +60,7 @@ Section<SceneAttachment> attachment_section() {
       "the same object. What is joined stays joined, and does not slide. Every other key is a param of the law. "
       "Contact does not know of it: where [contact] acts, what touches where it is joined needs a [[contact.pair]] "
       "with "
-      "`ignore`.",
+      "`ignore`, or to be joined across a gap wider than `dhat` by a law that keeps it, as held_above_triangle does.",
       {},
       {},
       {}};

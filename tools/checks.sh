@@ -86,7 +86,7 @@ named_laws='
   scenes/build_contact.cpp: log_barrier friction friction_secant: the same; the ground has this barrier
   scenes/scene_keys.cpp: gravity affine_orthogonality attachment: keys, and the help of one
   scenes/scene.h: log_barrier: the default of `barrier` in [contact]
-  scenes/attachment_keys.cpp: attachment joined_points pinned_to_triangle: the defaults of `law` in [[attachment]]
+  scenes/attachment_keys.cpp: attachment joined_points pinned_to_triangle held_above_triangle: defaults of `law` in [[attachment]], and its help
   scenes/scene_text.cpp: attachment: the key
   scenes/scene_reference.cpp: stable_neo_hookean: the scene that is shown
   scenes/catalogue.cpp: log_barrier: an example in a message

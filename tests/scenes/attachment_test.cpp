@@ -101,12 +101,17 @@ std::vector<Joined> joined_pairs() {
       "cross_section = 1e-4\nenergy = [{ law = \"rod_stretching\", EA = 100 }]\n";
   const std::string joint = "[[attachment]]\nobject = \"block\"\nmin = [-inf, -inf, 0.099]\nto = \"lid\"\nk = 1e3\n";
   const std::string seam = "[[attachment]]\nobject = \"lid\"\nto = \"block\"\nk = 1e3\n";
-  return {{"affine_surface", soft + lid + joint + "at = \"surface\"\nwithin = 0.03\n"},
-          {"affine_vertices", soft + lid + joint + "within = 0.03\n"},
-          {"surface_of_tet10", soft + lid + seam + "max = [inf, inf, 0.101]\nat = \"surface\"\nwithin = 0.03\n"},
-          {"sheet", soft + sheet + joint + "at = \"surface\"\nwithin = \"1 mm\"\n"},
-          {"rope", soft + rope + seam + "max = [0, 0, 0.1]\nwithin = \"1 mm\"\n"},
-          {"spring", soft + lid + joint + "within = 0.03\nlaw = \"spring\"\n"}};
+  return {
+      {"affine_surface", soft + lid + joint + "at = \"surface\"\nwithin = 0.03\n"},
+      {"affine_vertices", soft + lid + joint + "within = 0.03\n"},
+      {"surface_of_tet10", soft + lid + seam + "max = [inf, inf, 0.101]\nat = \"surface\"\nwithin = 0.03\n"},
+      {"across_a_gap", soft +
+                           "\n[[object]]\nname = \"lid\"\nkinematics = \"affine\"\ndensity = 500\n"
+                           "box = { size = [0.1, 0.1, 0.05], cells = [2, 2, 1] }\ntranslate = [0.01, 0.005, 0.11]\n" +
+                           joint + "at = \"surface\"\nwithin = 0.02\nlaw = \"held_above_triangle\"\n"},
+      {"sheet", soft + sheet + joint + "at = \"surface\"\nwithin = \"1 mm\"\n"},
+      {"rope", soft + rope + seam + "max = [0, 0, 0.1]\nwithin = \"1 mm\"\n"},
+      {"spring", soft + lid + joint + "within = 0.03\nlaw = \"spring\"\n"}};
 }
 
 // Joints act and react: linear and angular momentum stay, which `midpoint` keeps; energy is accounted for.
@@ -284,6 +289,21 @@ TEST(Attachments, WhereBodiesTouchNeedAPairThatIsIgnored) {
             "[0.02, 0.03, 0.1] m; move them apart with 'translate', or look at them: ergon run SCENE "
             "--report-intersections FILE.vtu; what is joined may touch by [[contact.pair]] first = \"tip\", second = "
             "\"block\", ignore = true");
+}
+
+// A board that is held beside a block, across twice the gap at which contact acts: what is held turns with the block.
+TEST(Attachments, AcrossAGapNeedNoPairThatIsIgnored) {
+  const FinishedScene held = finish_text(
+      "[time]\ndt = 0.01\nsteps = 20\n[contact]\n" +
+      block("block", "element = \"tet4\"\nfixed = [{ max = [0.001, inf, inf] }]\n") +
+      "\n[[object]]\nname = \"board\"\nkinematics = \"affine\"\ndensity = 500\n"
+      "box = { size = [0.02, 0.1, 0.1], cells = [1, 2, 2] }\ntranslate = [0.102, 0.01, 0.01]\n"
+      "[[attachment]]\nobject = \"block\"\nmin = [0.099, 0.01, 0.01]\nto = \"board\"\nat = \"surface\"\n"
+      "within = \"5 mm\"\nlaw = \"held_above_triangle\"\nk = \"10 kN/m\"\nconstraint_tolerance = \"0.1 mm\"\n");
+  ASSERT_EQ(held.summary.failure, "");
+  EXPECT_EQ(held.summary.most_contacts, 0);
+  EXPECT_LT(mean(held, held.end.x, 1, 2), mean(held, held.built.start.x, 1, 2));
+  EXPECT_NEAR((held.end.x - held.built.start.x).cwiseAbs().maxCoeff(), 0, 0.02);
 }
 
 TEST(Attachments, HoldTheSwingTogether) {

@@ -133,6 +133,11 @@ std::vector<Form> triangles_and_tetrahedra() {
        {{"p", {0.25, 0.5, 3}}, {"t0", O}, {"t1", x}, {"t2", y}, {"w1", {0.25}}, {"w2", {0.5}}, {"k", {2}}},
        11,
        -2 * 0.5 * 3},
+      // The place turns with the triangle: raising t1 draws the point of height 1 towards -x.
+      {"held_above_triangle",
+       {{"p", {0.5, 0.5, 1}}, {"t0", O}, {"t1", x}, {"t2", y}, {"w1", {0.25}}, {"w2", {0.5}}, {"h", {1}}, {"k", {2}}},
+       8,
+       2 * 0.25},
       {"strain_rate",
        {{"x0", O},
         {"x1", xx},
