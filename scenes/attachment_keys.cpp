@@ -37,7 +37,21 @@ void check_attachment(T& attachment) {
       if (attachment.wrote(key))
         throw SourceError(attachment.at(key),
                           fmt::format("'{}' has no use without 'to': the vertices are held where they start", key));
-  if (!attachment.to_space() && !attachment.wrote("within"))
+  if (attachment.to_place())
+    for (const char* key : {"within", "to_min", "to_max"})
+      if (attachment.wrote(key))
+        throw SourceError(
+            attachment.at(key),
+            fmt::format("'{}' has no use here: at = \"place\" joins each to its own place, which then moves "
+                        "with '{}'",
+                        key, attachment.to));
+  if (attachment.to_place() && attachment.to == attachment.object)
+    throw SourceError(attachment.at("to"),
+                      fmt::format("places of '{}' would be attached to themselves; name another body", attachment.to));
+  if (attachment.wrote("places") && (attachment.wrote("min") || attachment.wrote("max")))
+    throw SourceError(attachment.at("places"),
+                      "'places' and a box are two ways to say what is joined; leave one of them out");
+  if (!attachment.to_space() && !attachment.to_place() && !attachment.wrote("within"))
     throw SourceError(attachment.place,
                       fmt::format("[[attachment]] lacks the key 'within': how far from '{}' the vertices may be at the "
                                   "start, in m",
@@ -68,15 +82,22 @@ Section<SceneAttachment> attachment_section() {
       text_key("object", &T::object, Need::required, "name of the object whose vertices are joined"),
       vector_key("min", &T::min, "m", with_infinity, Need::optional, "lower corner of the box"),
       vector_key("max", &T::max, "m", with_infinity, Need::optional, "upper corner"),
+      points_key(
+          "places", &T::places, "m", Need::optional,
+          "in place of a box of vertices, points at the start that move with the object, which is affine: one is "
+          "a ball joint, two a hinge about the line through them",
+          "none"),
       text_key("to", &T::to, Need::optional, "name of the object or obstacle that they are joined to",
                "the places in space where they start"),
-      choice_key(
-          "at", &T::joined_at, {"point", "surface"},
-          "of what `to` names: its nearest vertex, or the nearest place on its surface, between the corners of a "
-          "triangle"),
+      choice_key("at", &T::joined_at, {"point", "surface", "place"},
+                 "of what `to` names: its nearest vertex; or the nearest place on its surface, between the corners of "
+                 "a triangle; "
+                 "or, of an affine body or an obstacle, the very place where the vertex is, which then moves with "
+                 "that, across "
+                 "whatever gap"),
       number_key("within", &T::within, "m", positive, Need::optional,
                  "largest distance at the start; a vertex in the box that has nothing so near is an error",
-                 "required with `to`"),
+                 "required with `to`, unless at a place"),
       vector_key(
           "to_min", &T::to_min, "m", with_infinity, Need::optional,
           "lower corner of a box: only vertices of `to` in it, or triangles that are wholly in it, are joined to"),

@@ -45,6 +45,11 @@ struct Body {
   double gyration = 0;  // m, the radius of gyration of its cross-section
   int first_twist = 0;  // of the twists of its cells among all vertices of the scene
 
+  // Points that move with the body and are no vertices of it (m, at the start), which joints ask for: of an affine
+  // body, and of one that is held or scripted as a whole.
+  std::vector<Eigen::Vector3d> places;
+  int first_place = 0;  // of these among all vertices of the scene
+
   bool twists() const { return !axes.empty(); }
   // Of a vertex of `ordered`, or of the twist of cell c, which is numbered ordered.vertices() + c.
   int in_scene(int vertex) const {

@@ -31,6 +31,8 @@ Carriers carriers_of(const std::vector<Body>& bodies) {
     const Eigen::Matrix<double, 3, 4> points = equimomental_points(*body.moments);
     for (int v = 0; v < body.ordered.vertices(); ++v)
       out.carry(body.first_vertex + v, number, barycentric(points, body.ordered.X.col(v)));
+    for (size_t i = 0; i < body.places.size(); ++i)
+      out.carry(body.first_place + static_cast<int>(i), number, barycentric(points, body.places[i]));
   }
   return out;
 }

@@ -26,6 +26,7 @@ struct JointKind {
 JointKind kind_of(const SceneAttachment& attachment) {
   if (attachment.to_space()) return {"an attachment to places in space", {"point"}};
   if (attachment.to_surface()) return {"an attachment to a surface", {"point_triangle"}};
+  if (attachment.to_place()) return {"an attachment to places of a body", {"point_point"}};
   return {"an attachment to vertices", {"point_point", "edge"}};
 }
 
@@ -91,8 +92,10 @@ size_t object_index(const Scene& scene, const std::string& name) {
   return static_cast<size_t>(std::find_if(scene.objects.begin(), scene.objects.end(), is_it) - scene.objects.begin());
 }
 
-const Body& body_named(const BuiltScene& built, const std::string& name) {
-  return *std::find_if(built.bodies.begin(), built.bodies.end(), [&](const Body& body) { return body.name == name; });
+// Names are those of bodies.
+template <class Bodies>
+auto& body_named(Bodies& bodies, const std::string& name) {
+  return *std::find_if(bodies.begin(), bodies.end(), [&](const Body& body) { return body.name == name; });
 }
 
 std::string reach_of(const Body& body) {
@@ -100,16 +103,41 @@ std::string reach_of(const Body& body) {
   return fmt::format("'{}', which reaches from {} to {}", body.name, brackets(bounds.col(0)), brackets(bounds.col(1)));
 }
 
-std::string vertex_of(const Body& body, int vertex) {
-  return fmt::format("vertex {} of '{}' at {}", body.vertex_from[static_cast<size_t>(vertex)], body.name,
-                     brackets(body.ordered.X.col(vertex)));
-}
+// What is joined to something.
+struct JointEnd {
+  int own;     // vertex of the body's mesh; -1: a place
+  int vertex;  // of the scene
+  Eigen::Vector3d x;
 
-// Vertices of `ordered` that a cell names; affine and other bodies may have more.
+  std::string text(const Body& body) const {
+    return own < 0 ? fmt::format("the place of '{}' at {}", body.name, brackets(x))
+                   : fmt::format("vertex {} of '{}' at {}", body.vertex_from[static_cast<size_t>(own)], body.name,
+                                 brackets(x));
+  }
+};
+
 std::vector<int> selected(const SceneAttachment& attachment, const Body& body) {
   std::vector<int> out = vertices_in_box(body.ordered, vector(attachment.min), vector(attachment.max));
   if (out.empty()) throw SourceError(attachment.place, "this box holds no vertex of object " + reach_of(body));
   return out;
+}
+
+std::vector<JointEnd> ends_of(const SceneAttachment& attachment, const UsedAttachment& used, const Body& body) {
+  std::vector<JointEnd> out;
+  if (attachment.wrote("places"))
+    for (const Vector3& place : attachment.places)
+      out.push_back({-1, body.first_place + used.own_place + static_cast<int>(out.size()), vector(place)});
+  else
+    for (const int v : selected(attachment, body)) out.push_back({v, body.in_scene(v), body.ordered.X.col(v)});
+  return out;
+}
+
+// Where all of it moves alike.
+bool carries_places(const Body& body) {
+  if (body.affine()) return true;
+  const auto all = static_cast<size_t>(body.ordered.vertices());
+  if (body.scripts.empty()) return body.fixed.size() == all;
+  return body.scripts.size() == 1 && body.scripts[0].vertices.size() == all && body.scripts[0].shapes.empty();
 }
 
 // What may be joined to, within its box.
@@ -135,22 +163,22 @@ std::vector<std::array<int, 3>> places_on(const SceneAttachment& attachment, con
 }
 
 // Where a vertex of `from` is joined to `to`.
-NearPlace place_for(const SceneAttachment& attachment, const Body& from, int vertex, const Body& to,
+NearPlace place_for(const SceneAttachment& attachment, const Body& from, const JointEnd& end, const Body& to,
                     const PlaceSearch& search) {
-  const NearPlace place = search.nearest(from.ordered.X.col(vertex));
+  const NearPlace place = search.nearest(end.x);
   const std::array<int, 3>& corners = search.part(place.part);
-  if (&from == &to && std::find(corners.begin(), corners.end(), vertex) != corners.end())
-    throw SourceError(attachment.at("to"),
-                      fmt::format("{} would be attached to {}; let 'to_min' and 'to_max' hold another part of the "
-                                  "object",
-                                  vertex_of(from, vertex),
-                                  attachment.to_surface() ? "a triangle of which it is a corner" : "itself"));
+  if (&from == &to && std::find(corners.begin(), corners.end(), end.own) != corners.end())
+    throw SourceError(
+        attachment.at("to"),
+        fmt::format("{} would be attached to {}; let 'to_min' and 'to_max' hold another part of the "
+                    "object",
+                    end.text(from), attachment.to_surface() ? "a triangle of which it is a corner" : "itself"));
   if (place.distance > attachment.within)
     throw SourceError(
         attachment.at("within"),
         fmt::format("{} has no {} of '{}' within {} m: the nearest is {:.4g} m away, at {}; let 'min' and "
                     "'max' hold fewer vertices, or give a larger 'within'",
-                    vertex_of(from, vertex), attachment.to_surface() ? "place on the surface" : "vertex", to.name,
+                    end.text(from), attachment.to_surface() ? "place on the surface" : "vertex", to.name,
                     attachment.within, place.distance, brackets(search.position(place))));
   return place;
 }
@@ -161,20 +189,20 @@ double height(const Eigen::Vector3d& x, const std::array<int, 3>& t, const Eigen
   return normal.dot(x - X.col(t[0]));
 }
 
-void join_to(const SceneAttachment& attachment, const Body& from, const std::vector<int>& own, const Body& to,
+void join_to(const SceneAttachment& attachment, const Body& from, const std::vector<JointEnd>& ends, const Body& to,
              UsedAttachment& out) {
   const PlaceSearch search(to.ordered.X, places_on(attachment, to));
   StencilData sizes;
-  for (const int vertex : own) {
-    const NearPlace place = place_for(attachment, from, vertex, to, search);
+  for (const JointEnd& end : ends) {
+    const NearPlace place = place_for(attachment, from, end, to, search);
     const std::array<int, 3>& corners = search.part(place.part);
-    out.stencils.push_back(from.in_scene(vertex));
+    out.stencils.push_back(end.vertex);
     for (size_t i = 0; i < (attachment.to_surface() ? 3 : 1); ++i) out.stencils.push_back(to.in_scene(corners[i]));
     sizes["L"].push_back(place.distance);
     if (!attachment.to_surface()) continue;
     sizes["w1"].push_back(place.weights[1]);
     sizes["w2"].push_back(place.weights[2]);
-    sizes["h"].push_back(height(from.ordered.X.col(vertex), corners, to.ordered.X));
+    sizes["h"].push_back(height(end.x, corners, to.ordered.X));
   }
   for (const auto& size : sizes_of(out.law.declared->geometry)) {
     const Symbol* rest = out.law.declared->find(size.first);
@@ -190,9 +218,33 @@ std::vector<UsedAttachment> attachment_laws(const Scene& scene, Laws& laws) {
     const Energy& energy = laws.get(attachment);
     check_law(energy, attachment);
     check_keys(energy, attachment);
-    out.push_back({used_law(energy, attachment, scene.objects[object_index(scene, attachment.object)], laws)});
+    out.push_back({.law = used_law(energy, attachment, scene.objects[object_index(scene, attachment.object)], laws)});
   }
   return out;
+}
+
+void add_places(const Scene& scene, std::vector<Body>& bodies, std::vector<UsedAttachment>& attachments) {
+  for (size_t i = 0; i < attachments.size(); ++i) {
+    const SceneAttachment& attachment = scene.attachments[i];
+    Body& from = bodies[object_index(scene, attachment.object)];
+    const auto check = [&](const Body& body, const char* key) {
+      if (carries_places(body)) return;
+      throw SourceError(attachment.at(key),
+                        fmt::format("'{}' carries no places: they move with an affine body, or with what is held or "
+                                    "scripted as a whole and keeps its shape; join its {}",
+                                    body.name, key == std::string("at") ? "nearest point or surface" : "vertices"));
+    };
+    if (attachment.wrote("places")) {
+      check(from, "places");
+      attachments[i].own_place = static_cast<int>(from.places.size());
+      for (const Vector3& place : attachment.places) from.places.push_back(vector(place));
+    }
+    if (!attachment.to_place()) continue;
+    Body& to = body_named(bodies, attachment.to);
+    check(to, "at");
+    attachments[i].to_place = static_cast<int>(to.places.size());
+    for (const JointEnd& end : ends_of(attachment, attachments[i], from)) to.places.push_back(end.x);
+  }
 }
 
 void join(const Scene& scene, const BuiltScene& built, const std::string& folder,
@@ -202,16 +254,30 @@ void join(const Scene& scene, const BuiltScene& built, const std::string& folder
     UsedAttachment& out = attachments[i];
     const size_t object = object_index(scene, attachment.object);
     const Body& from = built.bodies[object];
-    const std::vector<int> own = selected(attachment, from);
-    if (attachment.to_space())
-      for (const int vertex : own) out.stencils.push_back(from.in_scene(vertex));
+    const std::vector<JointEnd> ends = ends_of(attachment, out, from);
+    if (!attachment.to_space() && !attachment.to_place())
+      join_to(attachment, from, ends, body_named(built.bodies, attachment.to), out);
     else
-      join_to(attachment, from, own, body_named(built, attachment.to), out);
+      for (size_t k = 0; k < ends.size(); ++k) {
+        out.stencils.push_back(ends[k].vertex);
+        if (attachment.to_place())
+          out.stencils.push_back(body_named(built.bodies, attachment.to).first_place + out.to_place +
+                                 static_cast<int>(k));
+      }
     if (std::none_of(out.stencils.begin(), out.stencils.end(), [&](int v) { return built.system->moves(v); }))
       throw SourceError(attachment.place,
                         "all that this attachment joins is fixed or scripted: it moves nothing; move "
                         "the box, or leave the attachment out");
     if (out.law.fields.empty()) continue;
+    for (const LawField& field : out.law.fields)
+      if (field.over_mesh() && attachment.wrote("places"))
+        throw SourceError(
+            field.place,
+            fmt::format("'{}' varies over the mesh of '{}', of which 'places' are no part; give one value, "
+                        "or a formula in t alone",
+                        field.param->name, from.name));
+    std::vector<int> own;
+    for (const JointEnd& end : ends) own.push_back(std::max(end.own, 0));
     const Sites sites = sites_of_stencils(from.ordered, own, 1);
     place_fields({&scene.objects[object], &from, &sites, folder}, out.law);
   }
@@ -220,7 +286,8 @@ void join(const Scene& scene, const BuiltScene& built, const std::string& folder
 void add_attachments(const Scene& scene, const std::vector<UsedAttachment>& attachments, const UsedKernels& kernels,
                      BuiltScene& out) {
   for (size_t i = 0; i < attachments.size(); ++i) try {
-      const auto& [law, stencils] = attachments[i];
+      const UsedLaw& law = attachments[i].law;
+      const std::vector<int>& stencils = attachments[i].stencils;
       const Energy& energy = *law.energy;
       const int index = add_law(
           scene, scene.attachments[i], law,

@@ -12,12 +12,18 @@ namespace ergon {
 
 struct UsedAttachment {
   UsedLaw law;
+  // The first of its places among those of the object, and of what that is joined to; set by add_places.
+  int own_place = -1, to_place = -1;
   std::vector<int> stencils{};  // vertices of the scene, the joined vertex first; set by join
 };
 
 // Reads the laws and their params, in the order of the scene. Throws SourceError at the scene's line unless attachments
 // of their kind can carry them.
 std::vector<UsedAttachment> attachment_laws(const Scene& scene, Laws& laws);
+
+// Gives the bodies the places that joints need of them. Throws SourceError at the scene's line for a body that carries
+// no places.
+void add_places(const Scene& scene, std::vector<Body>& bodies, std::vector<UsedAttachment>& attachments);
 
 // Finds what is joined at the start of a scene whose bodies and system are known, and evaluates what varies over it.
 // `folder` is what paths are relative to. Throws SourceError at the scene's line for a box without vertices, a vertex

@@ -157,12 +157,24 @@ std::optional<StepLimits> step_limits(const Scene& scene, long steps) {
   return out;
 }
 
-void add_script(const BodyScript& script, int first_vertex, BuiltScene& out) {
-  std::vector<int> vertices = script.vertices;
-  for (int& vertex : vertices) vertex += first_vertex;
+// `shapes`: of the vertices.
+void add_script(const BodyScript& script, std::vector<int> vertices, const std::vector<ScriptShape>& shapes,
+                BuiltScene& out) {
   std::vector<ScriptKey> keys;
   for (const MotionKey& key : script.keys) keys.push_back({key.time, vector(key.translate), vector(key.rotate)});
-  out.script.add(std::move(vertices), out.start.x, script.center, std::move(keys), script.shapes);
+  out.script.add(std::move(vertices), out.start.x, script.center, std::move(keys), shapes);
+}
+
+// Places that move with a body: carried, or held and scripted as it is.
+void start_places(const Eigen::Vector3d& velocity, const Body& body, BuiltScene& out, std::vector<char>& fixed) {
+  std::vector<int> vertices(body.places.size());
+  std::iota(vertices.begin(), vertices.end(), body.first_place);
+  for (size_t i = 0; i < vertices.size(); ++i) {
+    out.start.x.col(vertices[i]) = body.places[i];
+    if (body.affine()) out.start.v.col(vertices[i]) = velocity;
+    fixed[static_cast<size_t>(vertices[i])] = body.affine() ? 0 : 1;
+  }
+  if (!body.affine() && !vertices.empty() && !body.scripts.empty()) add_script(body.scripts[0], vertices, {}, out);
 }
 
 // All bodies one after the other: positions, masses, velocities, fixed vertices.
@@ -176,6 +188,10 @@ void lay_out(const Scene& scene, BuiltScene& out) {
     if (!body.affine()) continue;
     body.first_control = vertices;
     vertices += 4;
+  }
+  for (Body& body : out.bodies) {
+    body.first_place = vertices;
+    vertices += static_cast<int>(body.places.size());
   }
   out.points = vertices;
   for (Body& body : out.bodies) {
@@ -208,9 +224,13 @@ void lay_out(const Scene& scene, BuiltScene& out) {
     for (const Guide& guide : body.guides) guides.push_back({first + guide.vertex, guide.along});
     for (const BodyScript& script : body.scripts) {
       hold(script.vertices);
-      add_script(script, first, out);
+      std::vector<int> scripted = script.vertices;
+      for (int& vertex : scripted) vertex += first;
+      add_script(script, std::move(scripted), script.shapes, out);
       follow_twist(script, body, out, fixed);
     }
+    start_places(i < scene.objects.size() ? vector(scene.objects[i].velocity) : Eigen::Vector3d::Zero(), body, out,
+                 fixed);
   }
   if (std::find(fixed.begin(), fixed.end(), 0) == fixed.end())
     throw SourceError(scene.objects.front().at(scene.objects.front().wrote("fixed") ? "fixed" : "scripted"),
@@ -288,6 +308,7 @@ BuiltScene build_scene(const Scene& scene, const Catalogue& catalogue, const Ker
       set_twist(scene.objects[i], used[i], out.bodies[i]);
       place_fields(scene.objects[i], out.bodies[i], folder, used[i]);
     }
+    add_places(scene, out.bodies, attachments);
     lay_out(scene, out);
     join(scene, out, folder, attachments);
     out.probes = probes_of(scene, out);

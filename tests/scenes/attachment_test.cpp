@@ -90,6 +90,10 @@ std::vector<Joined> joined_pairs() {
       "\n[[object]]\nname = \"lid\"\nkinematics = \"affine\"\ndensity = 500\nbox = { size = [0.1, 0.1, 0.05], cells = "
       "[2, 2, "
       "1] }\ntranslate = [0.01, 0.005, 0.1]\n";
+  const std::string above =
+      "\n[[object]]\nname = \"lid\"\nkinematics = \"affine\"\ndensity = 500\nbox = { size = [0.1, 0.1, 0.05], cells = "
+      "[2, 2, "
+      "1] }\ntranslate = [0.01, 0.005, 0.11]\n";
   const std::string sheet =
       "\n[[object]]\nname = \"lid\"\nelement = \"tri3\"\ndensity = 500\nthickness = \"1 mm\"\nbox = { size = [0.2, "
       "0.2, 1], "
@@ -101,17 +105,20 @@ std::vector<Joined> joined_pairs() {
       "cross_section = 1e-4\nenergy = [{ law = \"rod_stretching\", EA = 100 }]\n";
   const std::string joint = "[[attachment]]\nobject = \"block\"\nmin = [-inf, -inf, 0.099]\nto = \"lid\"\nk = 1e3\n";
   const std::string seam = "[[attachment]]\nobject = \"lid\"\nto = \"block\"\nk = 1e3\n";
-  return {
-      {"affine_surface", soft + lid + joint + "at = \"surface\"\nwithin = 0.03\n"},
-      {"affine_vertices", soft + lid + joint + "within = 0.03\n"},
-      {"surface_of_tet10", soft + lid + seam + "max = [inf, inf, 0.101]\nat = \"surface\"\nwithin = 0.03\n"},
-      {"across_a_gap", soft +
-                           "\n[[object]]\nname = \"lid\"\nkinematics = \"affine\"\ndensity = 500\n"
-                           "box = { size = [0.1, 0.1, 0.05], cells = [2, 2, 1] }\ntranslate = [0.01, 0.005, 0.11]\n" +
-                           joint + "at = \"surface\"\nwithin = 0.02\nlaw = \"held_above_triangle\"\n"},
-      {"sheet", soft + sheet + joint + "at = \"surface\"\nwithin = \"1 mm\"\n"},
-      {"rope", soft + rope + seam + "max = [0, 0, 0.1]\nwithin = \"1 mm\"\n"},
-      {"spring", soft + lid + joint + "within = 0.03\nlaw = \"spring\"\n"}};
+  return {{"affine_surface", soft + lid + joint + "at = \"surface\"\nwithin = 0.03\n"},
+          {"affine_vertices", soft + lid + joint + "within = 0.03\n"},
+          {"surface_of_tet10", soft + lid + seam + "max = [inf, inf, 0.101]\nat = \"surface\"\nwithin = 0.03\n"},
+          {"across_a_gap", soft + above + joint + "at = \"surface\"\nwithin = 0.02\nlaw = \"held_above_triangle\"\n"},
+          {"places_of_an_affine_body", soft + above + joint + "at = \"place\"\n"},
+          {"ball_joint",
+           "\n[[object]]\nname = \"block\"\nkinematics = \"affine\"\ndensity = 1000\nvelocity = [1, 0, 0.5]\n"
+           "box = { size = [0.1, 0.1, 0.1], cells = [1, 1, 1] }\n" +
+               above +
+               "[[attachment]]\nobject = \"block\"\nplaces = [[0.05, 0.05, 0.105]]\nto = \"lid\"\nat = \"place\"\nk = "
+               "1e3\n"},
+          {"sheet", soft + sheet + joint + "at = \"surface\"\nwithin = \"1 mm\"\n"},
+          {"rope", soft + rope + seam + "max = [0, 0, 0.1]\nwithin = \"1 mm\"\n"},
+          {"spring", soft + lid + joint + "within = 0.03\nlaw = \"spring\"\n"}};
 }
 
 // Joints act and react: linear and angular momentum stay, which `midpoint` keeps; energy is accounted for.
@@ -203,27 +210,59 @@ TEST(Attachments, FollowAnObstacleThatMoves) {
   EXPECT_GT(change, 0);
 }
 
-// A board of affine kinematics that turns about two attached points, gravity being tilted a little: a physical pendulum
-// of the period 2 pi sqrt(I/(m g d)), so that after a quarter of it it hangs in the direction of gravity.
-TEST(Attachments, AreJointsOfAffineBodies) {
+// A board of affine kinematics that hangs by a hinge, gravity being tilted a little: a physical pendulum of the period
+// 2 pi sqrt(I/(m g d)), so that after a quarter of it it hangs in the direction of gravity. The hinge is two vertices
+// of the board's upper edge, or two places above it.
+TEST(Attachments, AreHingesOfAffineBodies) {
   const double a = 0.1, h = 0.3, angle = 0.01;
-  const double period = 2 * M_PI * std::sqrt(((a * a + h * h) / 12 + h * h / 4) / (g * h / 2));
-  const auto swung = [&](int steps) {
-    const FinishedScene board =
-        finish_text("gravity = [" + std::to_string(g * angle) + ", 0, " + std::to_string(-g) +
-                    "]\n[time]\nintegrator = \"bdf2\"\ndt = " + std::to_string(period / 200) +
-                    "\nsteps = " + std::to_string(steps) +
-                    "\n[[object]]\nname = \"board\"\nkinematics = \"affine\"\ndensity = 1000\n"
-                    "box = { size = [0.1, 0.1, 0.3], cells = [2, 1, 3] }\n"
-                    "[[attachment]]\nobject = \"board\"\nmin = [0.04, -inf, 0.299]\nmax = [0.06, inf, inf]\nk = 1e6\n");
-    EXPECT_EQ(board.summary.failure, "");
-    const int control = board.built.bodies[0].first_control;
-    return (board.end.x.middleCols<4>(control) - board.built.start.x.middleCols<4>(control)).row(0).mean();
+  const auto check = [&](double pivot, const std::string& joined) {
+    SCOPED_TRACE(joined);
+    const double d = pivot - h / 2, period = 2 * M_PI * std::sqrt(((a * a + h * h) / 12 + d * d) / (g * d));
+    const auto swung = [&](int steps) {
+      const FinishedScene board = finish_text(
+          "gravity = [" + std::to_string(g * angle) + ", 0, " + std::to_string(-g) +
+          "]\n[time]\nintegrator = \"bdf2\"\ndt = " + std::to_string(period / 200) +
+          "\nsteps = " + std::to_string(steps) +
+          "\n[[object]]\nname = \"board\"\nkinematics = \"affine\"\ndensity = 1000\n"
+          "box = { size = [0.1, 0.1, 0.3], cells = [2, 1, 3] }\n[[attachment]]\nobject = \"board\"\nk = 1e6\n" +
+          joined);
+      EXPECT_EQ(board.summary.failure, "");
+      const int control = board.built.bodies[0].first_control;
+      return (board.end.x.middleCols<4>(control) - board.built.start.x.middleCols<4>(control)).row(0).mean();
+    };
+    const double hanging = angle * d;
+    EXPECT_NEAR(swung(50), hanging, 0.02 * hanging);
+    EXPECT_NEAR(swung(100), 2 * hanging, 0.02 * hanging);
+    EXPECT_NEAR(swung(150), hanging, 0.04 * hanging);
   };
-  const double hanging = angle * h / 2;
-  EXPECT_NEAR(swung(50), hanging, 0.02 * hanging);
-  EXPECT_NEAR(swung(100), 2 * hanging, 0.02 * hanging);
-  EXPECT_NEAR(swung(150), hanging, 0.04 * hanging);
+  check(0.3, "min = [0.04, -inf, 0.299]\nmax = [0.06, inf, inf]\n");
+  check(0.4, "places = [[0.05, 0, 0.4], [0.05, 0.1, 0.4]]\n");
+}
+
+// What is joined at places of an obstacle turns with it, across a gap.
+TEST(Attachments, AtPlacesTurnWithAnObstacle) {
+  const FinishedScene turned = finish_text(
+      quasi_static(4) + block("block", "element = \"tet4\"\n") +
+      "[[obstacle]]\nname = \"bar\"\ncurve = { points = [[0, 0, 0.2], [0.1, 0, 0.2]] }\ncenter = [0.05, 0.05, 0.2]\n"
+      "key = [{ time = 0.04, rotate = [0, 0, \"90 deg\"] }]\n"
+      "[[attachment]]\nobject = \"block\"\nmin = [-inf, -inf, 0.099]\nto = \"bar\"\nat = \"place\"\nk = 1e6\n");
+  ASSERT_EQ(turned.summary.failure, "");
+  for (const int v : at_height(turned.built, 0.1)) {
+    const Eigen::Vector3d X = turned.built.start.x.col(v);
+    EXPECT_LT((turned.end.x.col(v) - Eigen::Vector3d(0.1 - X[1], X[0], 0.1)).norm(), 1e-4);
+  }
+}
+
+TEST(Attachments, LinkTheBoxesOfAChain) {
+  const FinishedScene chain = finish("box_chain.toml", 60);
+  ASSERT_EQ(chain.summary.failure, "");
+  EXPECT_LT(mean(chain, chain.end.x, 9, 2), -0.3);
+  EXPECT_LT(chain.end.x.col(chain.built.bodies[0].first_place).norm(), 1e-2);
+  for (size_t i = 0; i + 1 < 10; ++i) {
+    const int own = chain.built.bodies[i].first_place + 1, next = chain.built.bodies[i + 1].first_place;
+    EXPECT_EQ(chain.built.start.x.col(own), chain.built.start.x.col(next));
+    EXPECT_LT((chain.end.x.col(own) - chain.end.x.col(next)).norm(), 2e-3) << i;
+  }
 }
 
 // A ring of one object: its ends are joined to one another.
