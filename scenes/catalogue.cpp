@@ -28,6 +28,17 @@ Energy::Kind kind_of_file(const std::string& file) {
   return read_energy(file).kind;  // says what is wrong with it
 }
 
+// "; did you mean 'mine.energy'?": of the files in the folder of one that is not there.
+std::string nearest_beside(const fs::path& path) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(path.has_parent_path() ? path.parent_path() : fs::path("."), error))
+    if (entry.path().extension() == ".energy") names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  const std::string nearest = nearest_name(path.stem().string(), names);
+  return nearest.empty() ? "" : fmt::format("; did you mean '{}.energy'?", nearest);
+}
+
 }  // namespace
 
 Catalogue::Catalogue(const std::vector<std::string>& folders) : folders_(folders) {
@@ -114,12 +125,16 @@ std::string Catalogue::file_of(const std::string& law, const std::string& base, 
   if (law.ends_with(".energy")) {
     const fs::path path = fs::path(base) / law;
     if (!fs::is_regular_file(path))
-      throw SourceError(place, fmt::format("there is no energy file '{}' (paths are relative to the scene file)",
-                                           path.lexically_normal().string()));
+      throw SourceError(place, fmt::format("there is no energy file '{}' (paths are relative to the scene file){}",
+                                           path.lexically_normal().string(), nearest_beside(path)));
     return path.lexically_normal().string();
   }
   auto found = files_.find(law);
   if (found == files_.end()) {
+    if (fs::is_regular_file(fs::path(base) / (law + ".energy")))
+      throw SourceError(place, fmt::format("there is no energy '{0}' in {1}; that of the file {0}.energy is named with "
+                                           "the ending: '{0}.energy'",
+                                           law, fmt::join(folders_, ", ")));
     std::vector<std::string> files;
     for (const auto& [name, file] : files_) files.push_back(name);
     throw SourceError(place, fmt::format("there is no energy '{}' in {}{}", law, fmt::join(folders_, ", "),

@@ -68,8 +68,10 @@ int make(const Options& options, std::ostream& out) {
   const std::string file = (folder / (options.name + ".energy")).lexically_normal().string();
   if (std::filesystem::exists(file)) throw InputError(fmt::format("{}: there is a file of that name already", file));
   write_text_file(file, with_name(chosen_one.text, options.name));
-  out << fmt::format("{0}: {1}; sound as it stands. Change it, then\n  ergon check {0}\n  ergon plot {0}\n", file,
-                     chosen_one.what);
+  out << fmt::format(
+      "{0}: {1}; sound as it stands. Change it, then\n  ergon check {0}\n  ergon plot {0}\n"
+      "Its last line tells how it is used.\n",
+      file, chosen_one.what);
   return exit_done;
 }
 

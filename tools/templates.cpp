@@ -15,6 +15,7 @@ let      J = det(F)                                  # volume over volume at res
 let      I = norm2(F)*J^(-2/3) - 3                   # change of shape: 0 at rest, 1 is much
 require  J > 0                                       # steps that would invert an element are shortened
 value    mu/2*I + K/2*(J - 1)^2
+# In a scene, of an object:  energy = [{ law = "NAME.energy", mu = "0.4 MPa", K = "20 MPa" }]
 )"},
       {"membrane", "density over F, 3x2",
        R"(# Cloth that is as stiff in all directions. (This line is the summary: say what the law is for.)
@@ -24,6 +25,7 @@ param    mu   N/m   (0, inf)    shear modulus, times thickness       # a name, i
 param    la   N/m   [0, inf)    first parameter of Lame, times thickness
 let      strain = (F'*F - identity(2))/2             # Green's strain: 0 at rest and under rotation
 value    mu*norm2(strain) + la/2*tr(strain)^2
+# In a scene, of an object with element = "tri3":  energy = [{ law = "NAME.energy", mu = "400 N/m", la = "800 N/m" }]
 )"},
       {"line", "density over F, 3x1",
        R"(# Thread that resists stretching and can never be pressed to a point. (This line is the summary.)
@@ -33,6 +35,7 @@ param    EA   N    (0, inf)     Young's modulus times the area of the cross-sect
 let      stretch2 = norm2(F)                         # square of the stretch
 require  stretch2 > 0
 value    EA/8*log(stretch2)^2
+# In a scene, of an object that is a curve:  energy = [{ law = "NAME.energy", EA = "100 N" }]
 )"},
       {"point", "energy of one point",
        R"(# Pulls every point towards a place, in proportion to its distance. (This line is the summary.)
@@ -42,6 +45,7 @@ dof      x           m                               # the position, a vector of
 param    k           N/m  (0, inf)    stiffness      # a name, its unit, its range, help
 param    place[3]    m                where to
 value    k/2*norm2(x - place)
+# In a scene, of any object:  energy = [{ law = "NAME.energy", k = "1 N/m", place = [0, 0, "50 cm"] }]
 )"},
       {"edge", "energy of two points, as a spring",
        R"(# Spring that stiffens as it is stretched. (This line is the summary: say what the law is for.)
@@ -53,6 +57,7 @@ let      L2 = norm2(X1 - X0)
 require  L2 > 0
 let      strain = (norm2(x1 - x0)/L2 - 1)/2          # Green's strain: 0 at the rest length
 value    k*L2/2*strain^2
+# In a scene, of any object:  energy = [{ law = "NAME.energy", k = "10 N/m" }]
 )"},
       {"corner", "energy of three points that follow each other on a line",
        R"(# Bending of a line that is straight at rest. (This line is the summary: say what the law is for.)
@@ -62,6 +67,7 @@ rest     L0 L1     m      (0, inf)   lengths of both edges at rest    # filled i
 param    EI        N*m^2  (0, inf)   bending stiffness    # a name, its unit, its range, help
 let      bend = (x2 - x1)/L1 - (x1 - x0)/L0          # change of direction; 0 while straight
 value    EI/(L0 + L1)*norm2(bend)
+# In a scene, of an object that is a curve:  energy = [{ law = "NAME.energy", EI = "1e-4 N*m^2" }]
 )"},
       {"triangle", "energy of three points",
        R"(# Keeps the area of a triangle. (This line is the summary: say what the law is for.)
@@ -73,6 +79,7 @@ let      A2 = norm2(cross(X1 - X0, X2 - X0))/4       # square of the area at res
 let      a2 = norm2(cross(x1 - x0, x2 - x0))/4       # square of the area: no root, so smooth everywhere
 require  A2 > 0
 value    k/8*sqrt(A2)*(a2/A2 - 1)^2
+# In a scene, of an object with element = "tri3":  energy = [{ law = "NAME.energy", k = "100 N/m" }]
 )"},
       {"tetrahedron", "energy of four points",
        R"(# Keeps the volume of a tetrahedron. (This line is the summary: say what the law is for.)
@@ -82,6 +89,7 @@ rest     V             m^3  (0, inf)   volume at rest
 param    K             Pa   (0, inf)   bulk modulus  # a name, its unit, its range, help
 let      J = det(columns(x1 - x0, x2 - x0, x3 - x0))/(6*V)
 value    K*V/2*(J - 1)^2
+# In a scene, of an object:  energy = [{ law = "NAME.energy", K = "1 MPa" }]
 )"},
       {"hinge", "energy of two triangles that share an edge",
        R"(# Bending: resists the change of the angle between two triangles. (This line is the summary.)
@@ -96,6 +104,7 @@ require  norm2(cross(E, X2 - X0)) > 0
 require  norm2(cross(E, X3 - X0)) > 0
 let      bend = dihedral(x0, x1, x2, x3) - dihedral(X0, X1, X2, X3)      # in radians
 value    3*k*norm2(E)/area*bend^2
+# In a scene, of an object with element = "tri3":  energy = [{ law = "NAME.energy", k = "1e-4 J" }]
 )"},
       {"patch", "energy of a triangle and those across its edges",
        R"(# Bending: resists what lies across the edges of a triangle coming nearer. (This line is the summary.)
@@ -110,6 +119,7 @@ require  area2 > 0
 let      d = inner0*(x3 - x0) + inner1*(x4 - x1) + inner2*(x5 - x2)
 let      D = inner0*(X3 - X0) + inner1*(X4 - X1) + inner2*(X5 - X2)
 value    k/area2*(norm2(d) - norm2(D))^2
+# In a scene, of an object with element = "tri3":  energy = [{ law = "NAME.energy", k = "1e-4 N/m" }]
 )"},
       {"rod_corner", "energy of two edges of a rod that twists",
        R"(# Resists twist of a rod. (This line is the summary: say what the law is for.)
@@ -141,6 +151,7 @@ update   moved0 = t0 - T0
 update   moved1 = t1 - T1
 update   drift = drift + swept                       # kept for the next step
 value    GJ*twist^2/(L0 + L1)
+# In a scene, of an object that is a curve:  energy = [{ law = "NAME.energy", GJ = "1e-4 N*m^2" }]
 )"},
       {"point_point", "energy of two points that are not joined by an edge",
        R"(# Holds two points together. (This line is the summary: say what the law is for.)
@@ -148,6 +159,7 @@ energy   NAME   point_point
 dof      p q   m                                     # the points, vectors of 3
 param    k     N/m   (0, inf)   stiffness            # a name, its unit, its range, help
 value    k/2*norm2(p - q)
+# In a scene:  attachment = [{ object = "a", to = "b", within = "1 mm", law = "NAME.energy", k = "10 N/m" }]
 )"},
       {"point_edge", "energy of a point and an edge",
        R"(# Holds a point to a place on an edge. (This line is the summary: say what the law is for.)
@@ -156,6 +168,7 @@ dof      p e0 e1   m                                 # the point and the ends of
 rest     w         1     [0, 1]     where on the edge: 0 at e0, 1 at e1    # one value for each stencil
 param    k         N/m   (0, inf)   stiffness                              # one value for all
 value    k/2*norm2(p - (1 - w)*e0 - w*e1)
+# From C++: Potential::on_stencils takes the stencils, and `w` for each (tools/examples/own_arrays.cpp).
 )"},
       {"point_triangle", "energy of a point and a triangle",
        R"(# Holds a point to a place on a triangle. (This line is the summary: say what the law is for.)
@@ -164,6 +177,7 @@ dof      p t0 t1 t2   m                              # the point and the corners
 rest     w1 w2        1    [0, 1]    weights of t1 and t2 in the place; that of t0 is what is left of 1
 param    k            N/m  (0, inf)  stiffness       # one value for all; `rest` has one for each stencil
 value    k/2*norm2(p - (1 - w1 - w2)*t0 - w1*t1 - w2*t2)
+# In a scene:  attachment = [{ object = "a", to = "b", at = "surface", within = 1e-3, law = "NAME.energy", k = 10 }]
 )"},
       {"edge_edge", "energy of two edges",
        R"(# Holds two threads together where they cross. (This line is the summary: say what the law is for.)
@@ -172,6 +186,7 @@ dof      a0 a1 b0 b1   m                             # the ends of both edges, v
 rest     u v           1     [0, 1]     where on each edge: 0 at its first end, 1 at its second
 param    k             N/m   (0, inf)   stiffness    # one value for all; `rest` has one for each stencil
 value    k/2*norm2((1 - u)*a0 + u*a1 - (1 - v)*b0 - v*b1)
+# From C++: Potential::on_stencils takes the stencils, and `u`, `v` for each (tools/examples/own_arrays.cpp).
 )"},
       {"barrier", "law of contact over a gap",
        R"(# Keeps a gap open: zero beyond dhat, infinite at contact. (This line is the summary.)
@@ -181,12 +196,14 @@ param    dhat    m     (0, inf)    activation distance
 lag      kappa   N/m   (0, inf)    stiffness, which a scene renews between solves
 active   gap < dhat
 value    kappa*(dhat - gap)^3/gap                    # value, force and stiffness all begin at 0
+# In a scene:  contact = { barrier = "NAME.energy", dhat = "1 mm" }
 )"},
       {"distance", "gap of two points, under any law of contact",
        R"(# The distance of two points. (This line is the summary: say what the gap is between.)
 distance NAME   point_point
 dof      p q   m                                     # the points of the stencil, vectors of 3
 let      gap2 = norm2(p - q)                         # `gap2` (m^2), `gap` (m) or both; no `value`
+# From C++, under a law of contact: compose(law, distance, Offset::none) of symbolic/compose.h.
 )"},
   };
   return all;

@@ -62,6 +62,16 @@ TEST_F(catalogue, finds_by_path_relative_to_the_scene) {
             }),
             "a.toml:2:3: there is no energy file '" + folder.string() +
                 "/laws/his.energy' (paths are relative to the scene file)");
+  EXPECT_EQ(message_of([&] {
+              energies.file_of("laws/mime.energy", folder.string(), {"a.toml", 2, 3});
+            }),
+            "a.toml:2:3: there is no energy file '" + folder.string() +
+                "/laws/mime.energy' (paths are relative to the scene file); did you mean 'mine.energy'?");
+  EXPECT_EQ(message_of([&] {
+              energies.file_of("mine", (folder / "laws").string(), {"a.toml", 2, 3});
+            }),
+            "a.toml:2:3: there is no energy 'mine' in " + shipped +
+                "; that of the file mine.energy is named with the ending: 'mine.energy'");
 }
 
 TEST_F(catalogue, an_earlier_folder_hides_a_later_one) {

@@ -1,10 +1,12 @@
-// Every kind of file that `ergon new` writes is sound, compiles and evaluates as 50 digits say.
+// Every kind of file that `ergon new` writes is sound, compiles, evaluates as 50 digits say, and works in a scene as
+// its last line says.
 
 #include <gmock/gmock.h>
 
 #include "runtime/lanes/lanes.h"
 #include "symbolic/checks.h"
 #include "tests/tools/command.h"
+#include "tests/tools/json_lines.h"
 #include "tools/accuracy.h"
 #include "tools/installation.h"
 #include "tools/templates.h"
@@ -52,6 +54,68 @@ TEST_P(NewEnergy, IsSoundAndEvaluatesAsItsTextSays) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, NewEnergy, testing::ValuesIn(template_kinds()),
                          [](const auto& info) { return info.param; });
+
+// What the last line of the file says behind its two spaces.
+std::string use_of(const std::string& text) {
+  const std::string last = text.substr(text.rfind('\n', text.size() - 2) + 1);
+  EXPECT_TRUE(last.starts_with("# ")) << last;
+  EXPECT_LE(last.size(), 121u) << last;
+  return last.substr(last.find(":  ") + 3);
+}
+
+std::string object(const std::string& name, const std::string& place, const std::string& energy) {
+  const bool sheet = place == "sheet", line = place == "curve";
+  return "[[object]]\nname = \"" + name + "\"\ndensity = 1000\n" +
+         (line    ? "curve = { points = [[0, 0, 0], [0.2, 0, 0.05], [0.3, 0.2, 0]], cells = 12 }\ncross_section = \"1 "
+                    "cm^2\"\n"
+          : sheet ? "box = { size = [0.2, 0.1, 0.1], cells = [6, 3, 1] }\nelement = \"tri3\"\nthickness = \"1 mm\"\n"
+                  : "box = { size = [0.1, 0.1, 0.1], cells = [2, 2, 2] }\n") +
+         (line || sheet ? "" : "translate = " + place + "\n") + "fixed = [{ max = [0.04, inf, inf] }]\n" + energy;
+}
+
+class SlowNewEnergy : public CommandTest, public testing::WithParamInterface<std::string> {};
+
+TEST_P(SlowNewEnergy, WorksInASceneAsItsLastLineSays) {
+  ASSERT_EQ(ergon("new " + GetParam() + " my_law").code, 0);
+  const std::string use = use_of(read("my_law.energy"));
+  const std::string rubber = "energy = [{ law = \"stable_neo_hookean\", E = 1e5, nu = 0.3 }]\n";
+  std::string scene = "[time]\ndt = \"10 ms\"\nsteps = 5\n";
+  if (use.starts_with("energy = ")) {
+    const std::string text = read("my_law.energy");
+    const bool sheet = text.find("element = \"tri3\"") != std::string::npos;
+    const bool line = text.find("an object that is a curve") != std::string::npos;
+    scene += object("a", sheet ? "sheet" : line ? "curve" : "[0, 0, 0]", use);
+  } else {
+    scene = use + scene + object("a", "[0, 0, 0]", rubber) + object("b", "[0, 0, 0.1005]", rubber);
+  }
+  write("scene.toml", scene);
+  const Answer ran = ergon("run scene.toml --verify");
+  ASSERT_EQ(ran.code, 0) << scene << ran.out << ran.err;
+  const auto lines = json_lines(read("out/scene/report.jsonl"));
+  EXPECT_EQ(lines.size(), 5u);
+  EXPECT_GT(lines.back()["energy"][use.starts_with("contact") ? "contact_point_triangle" : "my_law"].get<double>(), 0)
+      << lines.back();
+}
+
+std::vector<std::string> kinds_of_scenes() {
+  std::vector<std::string> kinds;
+  for (const EnergyTemplate& one : energy_templates())
+    if (one.text.find("# In a scene") != std::string::npos) kinds.push_back(one.kind);
+  return kinds;
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, SlowNewEnergy, testing::ValuesIn(kinds_of_scenes()),
+                         [](const auto& info) { return info.param; });
+
+TEST(NewEnergies, AllSayHowTheyAreUsed) {
+  std::vector<std::string> others;
+  for (const EnergyTemplate& one : energy_templates()) {
+    if (one.text.find("\n# In a scene") != std::string::npos) continue;
+    EXPECT_NE(one.text.find("\n# From C++"), std::string::npos) << one.kind;
+    others.push_back(one.kind);
+  }
+  EXPECT_EQ(others, (std::vector<std::string>{"point_edge", "edge_edge", "distance"}));
+}
 
 TEST(NewEnergies, ThereIsOneOfEveryKindThatTheLanguageKnows) {
   std::vector<std::string> expected = {"solid", "membrane", "line"};
