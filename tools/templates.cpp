@@ -159,7 +159,7 @@ energy   NAME   point_point
 dof      p q   m                                     # the points, vectors of 3
 param    k     N/m   (0, inf)   stiffness            # a name, its unit, its range, help
 value    k/2*norm2(p - q)
-# In a scene:  attachment = [{ object = "a", to = "b", within = "1 mm", law = "NAME.energy", k = "10 N/m" }]
+# In a scene:  attachment = [{ object = "a", min = [-inf, -inf, 0.1], to = "b", within = 1e-3, law = "NAME.energy", k = 10 }]
 )"},
       {"point_edge", "energy of a point and an edge",
        R"(# Holds a point to a place on an edge. (This line is the summary: say what the law is for.)
@@ -177,7 +177,7 @@ dof      p t0 t1 t2   m                              # the point and the corners
 rest     w1 w2        1    [0, 1]    weights of t1 and t2 in the place; that of t0 is what is left of 1
 param    k            N/m  (0, inf)  stiffness       # one value for all; `rest` has one for each stencil
 value    k/2*norm2(p - (1 - w1 - w2)*t0 - w1*t1 - w2*t2)
-# In a scene:  attachment = [{ object = "a", to = "b", at = "surface", within = 1e-3, law = "NAME.energy", k = 10 }]
+# In a scene:  attachment = [{ object = "a", min = [-inf, -inf, 0.1], to = "b", at = "surface", within = 1e-3, law = "NAME.energy", k = 10 }]
 )"},
       {"edge_edge", "energy of two edges",
        R"(# Holds two threads together where they cross. (This line is the summary: say what the law is for.)

@@ -51,6 +51,21 @@ TEST(RodTwist, EveryEdgeHasATwistThatHasTheMassOfTheEdge) {
   }
 }
 
+// Of a strip of moduli E and G, stiffnesses are formulas in a scene: no law is written for it.
+TEST(RodTwist, StiffnessesFollowFromModuliAndASection) {
+  const std::string strip =
+      "law = \"discrete_rod\", EI1 = { formula = \"E*w*h^3/12\", E = \"2 GPa\", w = \"12 mm\", h = \"1 mm\" }, "
+      "EI2 = { formula = \"E*h*w^3/12\", E = \"2 GPa\", w = \"12 mm\", h = \"1 mm\" }, "
+      "GJ = { formula = \"G*w*h^3/3\", G = \"0.8 GPa\", w = \"12 mm\", h = \"1 mm\" }";
+  const std::string time = "dt = 0.01\nsteps = 5";
+  const FinishedScene formulas = finish_text(rod(time, clamped, strip));
+  const FinishedScene numbers =
+      finish_text(rod(time, clamped, "law = \"discrete_rod\", EI1 = 2e-3, EI2 = 0.288, GJ = 3.2e-3"));
+  ASSERT_EQ(formulas.summary.failure, "");
+  EXPECT_GT((numbers.end.x - numbers.built.start.x).cwiseAbs().maxCoeff(), 1e-3);
+  EXPECT_LT((formulas.end.x - numbers.end.x).cwiseAbs().maxCoeff(), 1e-12);
+}
+
 // Two turns between the middles of the first and the last edge, which a script turns: the twist is even, and so is the
 // moment of GJ times it over the length.
 TEST(RodTwist, ATurnedEndTwistsARodEvenly) {
