@@ -79,6 +79,23 @@ TEST(Attachments, KeepAToleranceHoweverSoftTheyAre) {
     EXPECT_LE((kept.end.x.col(v) - kept.built.start.x.col(v)).norm(), 1e-4);
 }
 
+// A block of 1 kg on 27 attachments of k/27 with the damping ratio tau*w/2, w^2 = k/m: v0/wd exp(-tau w^2 t/2) sin(wd
+// t).
+TEST(Attachments, AreDampedByTheirStiffness) {
+  const double k = 900, tau = 0.01, w = std::sqrt(k), ratio = tau * w / 2, wd = w * std::sqrt(1 - ratio * ratio);
+  for (const int steps : {50, 150, 250}) {
+    const FinishedScene swung = finish_text(
+        "gravity = [0, 0, 0]\n[time]\nintegrator = \"bdf2\"\ndt = 0.001\nsteps = " + std::to_string(steps) + "\n" +
+        block("block", "element = \"tet4\"\nvelocity = [0, 0, 0.1]\n") +
+        "[[attachment]]\nobject = \"block\"\nk = " + std::to_string(k / 27) + "\nstiffness_damping = \"10 ms\"\n");
+    ASSERT_EQ(swung.summary.failure, "");
+    double moved = 0;  // of the centre of mass
+    for (int v = 0; v < 27; ++v) moved += swung.built.mass[v] * (swung.end.x(2, v) - swung.built.start.x(2, v));
+    const double t = 0.001 * steps;
+    EXPECT_NEAR(moved, 0.1 / wd * std::exp(-ratio * w * t) * std::sin(wd * t), 0.02 * 0.1 / wd) << steps;
+  }
+}
+
 // Each pair: a soft block and what is above it, joined in one way, 3 cm apart or less at the start.
 struct Joined {
   const char* name;
