@@ -50,8 +50,12 @@ struct Body {
   std::vector<Eigen::Vector3d> places;
   int first_place = 0;  // of these among all vertices of the scene
 
+  // A shell with normals amid its edges (runtime/mesh/edge_normals.h): how many; their tips stand where twists would.
+  int tips = 0;
+
   bool twists() const { return !axes.empty(); }
-  // Of a vertex of `ordered`, or of the twist of cell c, which is numbered ordered.vertices() + c.
+  int first_tip() const { return first_twist; }
+  // Of a vertex of `ordered`, or of the twist of cell c or the tip of edge c, numbered ordered.vertices() + c.
   int in_scene(int vertex) const {
     return vertex < ordered.vertices() ? first_vertex + vertex : first_twist + vertex - ordered.vertices();
   }

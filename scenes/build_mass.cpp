@@ -81,6 +81,7 @@ void add_mass_damping(const Scene& scene, const Kernel& kernel, BuiltScene& out)
     std::iota(points.begin(), points.end(), first);
     for (int cell = 0; body.twists() && cell < body.ordered.cell_count(); ++cell)
       points.push_back(body.first_twist + cell);
+    for (int edge = 0; edge < body.tips; ++edge) points.push_back(body.first_tip() + edge);
     std::erase_if(points, [&](int v) { return out.mass[v] == 0 || out.coupled_mass.couples(v); });
     if (points.empty()) continue;
     out.system->add(Potential::on_stencils("drag", kernel, points, out.start.x,

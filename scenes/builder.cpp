@@ -15,6 +15,7 @@
 #include "scenes/build_attachment.h"
 #include "scenes/build_contact.h"
 #include "scenes/build_mass.h"
+#include "scenes/build_normals.h"
 #include "scenes/build_twist.h"
 #include "scenes/held_check.h"
 #include "scenes/laws.h"
@@ -196,7 +197,7 @@ void lay_out(const Scene& scene, BuiltScene& out) {
   out.points = vertices;
   for (Body& body : out.bodies) {
     body.first_twist = vertices;
-    if (body.twists()) vertices += body.ordered.cell_count();
+    vertices += body.twists() ? body.ordered.cell_count() : body.tips;
   }
   out.start.x.resize(3, vertices);
   out.start.v.setZero(3, vertices);
@@ -213,6 +214,7 @@ void lay_out(const Scene& scene, BuiltScene& out) {
         out.mass.segment(first, count) = lumped_masses(body.ordered, scene.objects[i].density * body.section);
       if (body.affine()) start_affine(scene.objects[i], body, out);
       start_twist(scene.objects[i], body, out, fixed, guides);
+      start_normals(scene.objects[i], body, out, fixed);
     }
     const auto hold = [&](const std::vector<int>& vertices) {
       for (int vertex : vertices) {
@@ -227,6 +229,11 @@ void lay_out(const Scene& scene, BuiltScene& out) {
       std::vector<int> scripted = script.vertices;
       for (int& vertex : scripted) vertex += first;
       add_script(script, std::move(scripted), script.shapes, out);
+      if (const std::vector<int> tips = tips_of(script, body); !tips.empty()) {
+        add_script(script, tips, {}, out);
+        for (const int tip : tips) fixed[static_cast<size_t>(tip)] = 1;
+        for (const int tip : tips) out.start.v.col(tip).setZero();
+      }
       follow_twist(script, body, out, fixed);
     }
     start_places(i < scene.objects.size() ? vector(scene.objects[i].velocity) : Eigen::Vector3d::Zero(), body, out,
@@ -306,6 +313,7 @@ BuiltScene build_scene(const Scene& scene, const Catalogue& catalogue, const Ker
     for (size_t i = 0; i < used.size(); ++i) {
       check_geometry(scene.objects[i], used[i], out.bodies[i]);
       set_twist(scene.objects[i], used[i], out.bodies[i]);
+      set_normals(used[i], out.bodies[i]);
       place_fields(scene.objects[i], out.bodies[i], folder, used[i]);
     }
     add_places(scene, out.bodies, attachments);

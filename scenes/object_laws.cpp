@@ -90,9 +90,14 @@ StencilData rod_data(const Energy& energy, const std::vector<int>& stencils, con
   return out;
 }
 
-// Without the twists of edges.
+// How many of the points of a stencil are vertices of the mesh: without twists of edges and tips of normals.
+int place_count(const Energy& energy) {
+  if (energy.geometry == "shell_triangle") return 3;
+  return points_of_stencil(energy.geometry) - twists_of_stencil(energy.geometry);
+}
+
 std::vector<int> places_of(const Energy& energy, const std::vector<int>& stencils) {
-  const int points = points_of_stencil(energy.geometry), places = points - twists_of_stencil(energy.geometry);
+  const int points = points_of_stencil(energy.geometry), places = place_count(energy);
   std::vector<int> out;
   for (size_t i = 0; i < stencils.size(); ++i)
     if (static_cast<int>(i) % points < places) out.push_back(stencils[i]);
@@ -192,7 +197,7 @@ void place_fields(const SceneObject& object, const Body& body, const std::string
         energy.kind == Energy::Kind::density
             ? sites_of_cells(body.ordered, body.quadrature)
             : sites_of_stencils(body.ordered, places_of(energy, stencils_on_mesh(energy.geometry, body.ordered)),
-                                points_of_stencil(energy.geometry) - twists_of_stencil(energy.geometry));
+                                place_count(energy));
     place_fields({&object, &body, &sites, folder}, law);
   }
 }

@@ -40,14 +40,14 @@ std::vector<const Symbol*> Energy::with_role(Role role) const {
 }
 
 const std::vector<std::string>& stencil_names() {
-  static const std::vector<std::string> names = {"point",       "edge",       "corner",         "triangle",
-                                                 "tetrahedron", "hinge",      "patch",          "rod_corner",
-                                                 "point_point", "point_edge", "point_triangle", "edge_edge"};
+  static const std::vector<std::string> names = {
+      "point",          "edge",       "corner",      "triangle",   "tetrahedron",    "hinge",    "patch",
+      "shell_triangle", "rod_corner", "point_point", "point_edge", "point_triangle", "edge_edge"};
   return names;
 }
 
 int points_of_stencil(std::string_view stencil) {
-  constexpr std::array points = {1, 2, 3, 3, 4, 4, 6, 5, 2, 3, 4, 4};
+  constexpr std::array points = {1, 2, 3, 3, 4, 4, 6, 6, 5, 2, 3, 4, 4};
   for (size_t i = 0; i < points.size(); ++i)
     if (stencil_names()[i] == stencil) return points[i];
   return 0;

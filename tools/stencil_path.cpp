@@ -74,6 +74,8 @@ std::vector<StencilPath> stencil_paths(const std::string& stencil) {
   if (stencil == "hinge") return {turned({-0.5 * x, 0.5 * x, y}, -y, -z, 2.5)};
   if (stencil == "patch")  // flat, and the last triangle turns about its edge
     return {turned({-0.5 * x, 0.5 * x, y, x + 0.5 * y, -x + 0.5 * y}, -y, -z, 2.5)};
+  if (stencil == "shell_triangle")  // flat, and the last normal turns about its edge
+    return {turned({-0.5 * x, 0.5 * x, y, 0.25 * x + 0.5 * y + z, -0.25 * x + 0.5 * y + z}, z, -y, 1.5)};
   if (stencil == "rod_corner")
     return {{"twist", "twist", "m", -2.5, 2.5, 0,
              [=](double s) {

@@ -88,8 +88,8 @@ StencilSample sample_stencils(std::string_view geometry, int cells) {
     std::vector<int> stencils = stencils_on_mesh(geometry, mesh);
     return {std::move(mesh), std::move(stencils)};
   }
-  Sheets sheets(geometry == "patch" || geometry == "rod_corner" ? std::max(cells, 2)
-                                                                : cells);  // two triangles are too few
+  const bool patches = geometry == "patch" || geometry == "shell_triangle" || geometry == "rod_corner";
+  Sheets sheets(patches ? std::max(cells, 2) : cells);  // two triangles are too few
   std::vector<int> stencils;
   if (geometry == "point_triangle") {
     stencils = sheets.point_triangles();
@@ -101,6 +101,8 @@ StencilSample sample_stencils(std::string_view geometry, int cells) {
     stencils = sheets.edge_edges();
   } else if (geometry == "rod_corner") {
     stencils = shortened(stencils_on_mesh("patch", sheets.mesh), 5, 6);
+  } else if (geometry == "shell_triangle") {
+    stencils = stencils_on_mesh("patch", sheets.mesh);
   } else {
     stencils = stencils_on_mesh(geometry == "corner" ? "triangle" : geometry, sheets.mesh);
   }

@@ -121,6 +121,20 @@ let      D = inner0*(X3 - X0) + inner1*(X4 - X1) + inner2*(X5 - X2)
 value    k/area2*(norm2(d) - norm2(D))^2
 # In a scene, of an object with element = "tri3":  energy = [{ law = "NAME.energy", k = "1e-4 N/m" }]
 )"},
+      {"shell_triangle", "energy of a triangle of a shell and the normals amid its edges",
+       R"(# Bending: resists turns of the normals amid the edges of a triangle. (This line is the summary.)
+energy   NAME   shell_triangle
+# p0, p1, p2 are the tips of the normals amid the edges opposite to x0, x1, x2; at rest a normal is as long as its edge.
+# The triangle on the other side of an edge sees the same normal, and nothing else holds it: a law gives it its length.
+dof      x0 x1 x2 p0 p1 p2              m                  # the points, vectors of 3
+rest     X0[3] X1[3] X2[3]              m                  rest positions    # named like a dof with a capital: filled in
+rest     P0[3] P1[3] P2[3]              m                  of the tips
+param    k                              N/m  (0, inf)      stiffness         # a name, its unit, its range, help
+let      d = [norm2(p0 - x0), norm2(p1 - x1), norm2(p2 - x2), norm2(p0 - x1), norm2(p1 - x2), norm2(p2 - x0), norm2(p0 - x2), norm2(p1 - x0), norm2(p2 - x1)]
+let      D = [norm2(P0 - X0), norm2(P1 - X1), norm2(P2 - X2), norm2(P0 - X1), norm2(P1 - X2), norm2(P2 - X0), norm2(P0 - X2), norm2(P1 - X0), norm2(P2 - X1)]
+require  norm2(D) > 0
+value    k/8*norm2(d - D)/norm(D)
+)"},
       {"rod_corner", "energy of two edges of a rod that twists",
        R"(# Resists twist of a rod. (This line is the summary: say what the law is for.)
 energy   NAME   rod_corner

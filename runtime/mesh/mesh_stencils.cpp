@@ -171,6 +171,23 @@ std::vector<int> patches_of(const Mesh& mesh) {
   return flat;
 }
 
+std::vector<int> shell_triangles_of(const Mesh& mesh) {
+  const std::vector<int> edges = edges_of(mesh);
+  std::map<std::array<int, 2>, int> number;
+  for (size_t i = 0; i < edges.size(); i += 2)
+    number.emplace(std::array{edges[i], edges[i + 1]}, static_cast<int>(i / 2));
+  std::vector<int> flat;
+  for (size_t start = 0; start < mesh.cells.size(); start += 3) {
+    const int* t = &mesh.cells[start];
+    flat.insert(flat.end(), t, t + 3);
+    for (int i = 0; i < 3; ++i) {
+      const int a = t[(i + 1) % 3], b = t[(i + 2) % 3];
+      flat.push_back(mesh.vertices() + number.at({std::min(a, b), std::max(a, b)}));
+    }
+  }
+  return flat;
+}
+
 struct KindOfStencil {
   const char* name;
   int points;
@@ -192,6 +209,7 @@ const std::vector<KindOfStencil>& kinds() {
        {Element::tri3},
        patches_of,
        {{"A", {0, 1, 2}}, {"inner0", {1, 2, 3}, true}, {"inner1", {2, 0, 4}, true}, {"inner2", {0, 1, 5}, true}}},
+      {"shell_triangle", 6, {Element::tri3}, shell_triangles_of, {{"A", {0, 1, 2}}}},
       {"rod_corner", 5, {Element::edge2}, rod_corners_of, {{"L0", {0, 1}}, {"L1", {1, 2}}}},
   };
   return table;

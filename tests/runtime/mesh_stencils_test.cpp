@@ -8,6 +8,7 @@
 
 #include "runtime/error.h"
 #include "runtime/mesh/curve.h"
+#include "runtime/mesh/edge_normals.h"
 #include "runtime/mesh/mesh_build.h"
 #include "runtime/mesh/rod_frames.h"
 
@@ -39,14 +40,14 @@ TEST(mesh_stencils, cells_must_be_of_their_element) {
             "'hinge' stencils are made from a mesh of Tri3 elements; this one has Quad4");
   EXPECT_EQ(error_of("body_pair", box(Element::tet4, 1)),
             "no stencils 'body_pair' can be made from a mesh; it has point, edge, corner, triangle, tetrahedron, "
-            "hinge, patch, rod_corner");
+            "hinge, patch, shell_triangle, rod_corner");
 }
 
 TEST(mesh_stencils, kinds_follow_from_the_element) {
   using Kinds = std::vector<std::string>;
   EXPECT_EQ(stencil_kinds(Element::point), (Kinds{"point"}));
   EXPECT_EQ(stencil_kinds(Element::edge2), (Kinds{"point", "edge", "corner", "rod_corner"}));
-  EXPECT_EQ(stencil_kinds(Element::tri3), (Kinds{"point", "edge", "triangle", "hinge", "patch"}));
+  EXPECT_EQ(stencil_kinds(Element::tri3), (Kinds{"point", "edge", "triangle", "hinge", "patch", "shell_triangle"}));
   EXPECT_EQ(stencil_kinds(Element::quad4), (Kinds{"point", "edge"}));
   EXPECT_EQ(stencil_kinds(Element::tet4), (Kinds{"point", "edge", "tetrahedron"}));
 }
@@ -158,6 +159,38 @@ TEST(mesh_stencils, a_patch_is_a_triangle_and_what_lies_across_its_edges) {
   branching.cells = {0, 1, 2, 1, 0, 3, 2, 1, 3};
   EXPECT_EQ(error_of("patch", branching),
             "vertex 3 lies across two edges of the triangle of vertices 0, 1, 2: patches need a finer mesh");
+}
+
+// The normal of an edge halves the angle between its triangles, at a border it is that of the only one.
+TEST(mesh_stencils, shell_triangles_name_the_tips_of_the_normals_amid_their_edges) {
+  Mesh roof = box_mesh(Element::tri3, {2, 2, 1}, {2, 2, 1});
+  for (int v = 0; v < roof.vertices(); ++v) roof.X(2, v) = std::abs(roof.X(0, v) - 1);
+  const std::vector<int> edges = stencils_on_mesh("edge", roof), shells = stencils_on_mesh("shell_triangle", roof);
+  const Eigen::Matrix3Xd tips = edge_normal_tips(roof);
+  ASSERT_EQ(static_cast<size_t>(tips.cols()), edges.size() / 2);
+  ASSERT_EQ(shells.size(), 2 * roof.cells.size());
+  for (size_t s = 0; s < shells.size(); s += 6) {
+    EXPECT_TRUE(std::equal(&shells[s], &shells[s] + 3, &roof.cells[s / 2]));
+    for (size_t i = 0; i < 3; ++i) {
+      const auto e = static_cast<size_t>(shells[s + 3 + i] - roof.vertices());
+      const std::set<int> across = {shells[s + (i + 1) % 3], shells[s + (i + 2) % 3]};
+      EXPECT_EQ(across, (std::set<int>{edges[2 * e], edges[2 * e + 1]}));
+    }
+  }
+  double area = 0;
+  for (size_t e = 0; e < edges.size() / 2; ++e) {
+    const Eigen::Vector3d a = roof.X.col(edges[2 * e]), b = roof.X.col(edges[2 * e + 1]);
+    const double to_the_left = (a[0] + b[0]) / 2 - 1;  // of the valley at x = 1
+    const Eigen::Vector3d normal = to_the_left == 0  ? Eigen::Vector3d(0, 0, 1)
+                                   : to_the_left < 0 ? Eigen::Vector3d(1, 0, 1).normalized()
+                                                     : Eigen::Vector3d(-1, 0, 1).normalized();
+    EXPECT_LT((tips.col(static_cast<int>(e)) - (a + b) / 2 - (b - a).norm() * normal).norm(), 1e-15) << e;
+    area += edge_areas(roof)[static_cast<int>(e)];
+  }
+  EXPECT_NEAR(area, 4 * std::sqrt(2), 1e-14);
+  const std::vector<int>& t = roof.cells;
+  EXPECT_EQ(edges_of_triangles_within(roof, {t[0], t[1], t[2]}).size(), 3u);
+  EXPECT_TRUE(edges_of_triangles_within(roof, {t[0], t[1]}).empty());
 }
 
 TEST(mesh_stencils, sizes_are_those_of_the_rest_shape) {

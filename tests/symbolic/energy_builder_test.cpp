@@ -140,7 +140,8 @@ TEST(EnergyBuilder, RefusesWhatAFileMayNotHold) {
           }),
           "expected a finite number in an expression, found inf");
   refused([] { EnergyBuilder("energy", "my_spring", "edg").build(); },
-          "unknown stencil 'edg'; known are point, edge, corner, triangle, tetrahedron, hinge, patch, rod_corner, "
+          "unknown stencil 'edg'; known are point, edge, corner, triangle, tetrahedron, hinge, patch, shell_triangle, "
+          "rod_corner, "
           "point_point, point_edge, point_triangle, edge_edge; did you mean 'edge'?");
 }
 

@@ -138,7 +138,7 @@ class NewCommand : public CommandTest {
 TEST_F(NewCommand, RefusesWhatWouldClash) {
   expect_refused("solids my_rubber",
                  "KIND: 'solids' is none of solid, membrane, line, point, edge, corner, triangle, tetrahedron, hinge, "
-                 "patch, rod_corner, "
+                 "patch, shell_triangle, rod_corner, "
                  "point_point, point_edge, point_triangle, edge_edge, barrier, distance; did you mean 'solid'?");
   expect_refused("solid 2nd", "NAME: expected a letter and then letters, digits and '_', found '2nd'");
   expect_refused("solid rubber.energy",

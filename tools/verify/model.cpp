@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "runtime/lanes/lanes.h"
+#include "runtime/mesh/edge_normals.h"
 #include "runtime/mesh/mesh_stencils.h"
 #include "symbolic/energy.h"
 #include "tools/installation.h"
@@ -27,8 +28,24 @@ int vertex_near(const Mesh& mesh, const Eigen::Vector3d& place) {
 
 Kernel catalogue_kernel(const std::string& law) { return load_kernel(find_energy(law), "", lanes::best_lanes()); }
 
-Model::Model(Mesh mesh)
-    : x(mesh.X), mesh_(std::move(mesh)), system_(mesh_.vertices()), held_(static_cast<size_t>(mesh_.vertices()), 0) {}
+namespace {
+
+Eigen::Matrix3Xd at_rest(const Mesh& mesh, bool normals) {
+  if (!normals) return mesh.X;
+  const Eigen::Matrix3Xd tips = edge_normal_tips(mesh);
+  Eigen::Matrix3Xd x(3, mesh.X.cols() + tips.cols());
+  x << mesh.X, tips;
+  return x;
+}
+
+}  // namespace
+
+Model::Model(Mesh mesh, bool normals)
+    : x(at_rest(mesh, normals)),
+      rest_(x),
+      mesh_(std::move(mesh)),
+      system_(static_cast<int>(x.cols())),
+      held_(static_cast<size_t>(x.cols()), 0) {}
 
 int Model::add(const std::string& law, const Parameters& params, std::optional<int> exactness) {
   const Energy energy = find_energy(law);
@@ -39,7 +56,7 @@ int Model::add(const std::string& law, const Parameters& params, std::optional<i
   StencilData rest;
   for (const RestSize& size : rest_sizes(energy.geometry))
     if (energy.find(size.name) != nullptr) rest[size.name] = rest_size_of(size, energy.geometry, stencils, mesh_);
-  return system_.add(Potential::on_stencils(law, kernel, stencils, mesh_.X, params, rest));
+  return system_.add(Potential::on_stencils(law, kernel, stencils, rest_, params, rest));
 }
 
 int Model::add_load(const Eigen::VectorXd& shares, const Eigen::Vector3d& force) {
@@ -58,6 +75,25 @@ void Model::set_load(int load, const Eigen::Vector3d& force) {
   system_.potential(load).set_param("force", {force[0], force[1], force[2]});
 }
 
+void Model::mirror(char axis) {
+  const int k = axis - 'x';
+  const double rounding = 1e-9 * mesh_.X.row(k).cwiseAbs().maxCoeff();
+  const auto in_plane = [&](int v) { return std::abs(mesh_.X(k, v)) < rounding; };
+  hold(vertices_where(mesh_, [&](const Eigen::Vector3d& X) { return std::abs(X[k]) < rounding; }), {&axis, 1});
+  if (x.cols() == mesh_.vertices()) return;
+  const std::vector<int> edges = stencils_on_mesh("edge", mesh_);
+  for (size_t e = 0; e < edges.size(); e += 2) {
+    if (!in_plane(edges[e]) || !in_plane(edges[e + 1])) continue;
+    const auto a = mesh_.X.col(edges[e]), b = mesh_.X.col(edges[e + 1]);
+    const int tip = mesh_.vertices() + static_cast<int>(e / 2);
+    // That of the border's triangle; the mirrored one makes it lie in the plane.
+    Eigen::Vector3d normal = x.col(tip) - (a + b) / 2;
+    normal[k] = 0;
+    x.col(tip) = rest_.col(tip) = (a + b) / 2 + (b - a).norm() * normal.normalized();
+    hold({tip}, {&axis, 1});
+  }
+}
+
 void Model::hold(const std::vector<int>& vertices, std::string_view axes) {
   for (const int v : vertices)
     for (const char axis : axes) held_[static_cast<size_t>(v)] |= static_cast<unsigned char>(1 << (axis - 'x'));
@@ -68,7 +104,7 @@ void Model::apply_holds() {
   if (!holds_changed_) return;
   std::vector<char> fixed;
   std::vector<Guide> guides;
-  for (int v = 0; v < mesh_.vertices(); ++v) {
+  for (int v = 0; v < system_.vertices(); ++v) {
     const unsigned held = held_[static_cast<size_t>(v)];
     fixed.push_back(held == 7);
     if (held == 0 || held == 7) continue;

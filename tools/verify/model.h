@@ -25,7 +25,9 @@ Kernel catalogue_kernel(const std::string& law);
 
 class Model {
  public:
-  explicit Model(Mesh mesh);
+  // `normals`: with the tips of the normals amid edges, of which laws over a shell_triangle know, as further columns of
+  // x.
+  explicit Model(Mesh mesh, bool normals = false);
 
   const Mesh& mesh() const { return mesh_; }
   Eigen::Matrix3Xd x;  // m, where the vertices are; at first as in the mesh
@@ -37,6 +39,9 @@ class Model {
   int add_load(const Eigen::VectorXd& shares, const Eigen::Vector3d& force);
   void set_load(int load, const Eigen::Vector3d& force);
 
+  // A plane of symmetry across an axis, of "xyz", through the origin: neither vertices in it nor the normals of edges
+  // in it leave it. Comes before add().
+  void mirror(char axis);
   // Vertices that do not move along axes, of "xyz". Adds to what was held before.
   void hold(const std::vector<int>& vertices, std::string_view axes = "xyz");
 
@@ -54,6 +59,7 @@ class Model {
  private:
   void apply_holds();
 
+  Eigen::Matrix3Xd rest_;  // x at first
   Mesh mesh_;
   System system_;
   Newton newton_;
