@@ -94,6 +94,17 @@ void Model::mirror(char axis) {
   }
 }
 
+void Model::hold_normals(const std::vector<int>& vertices) {
+  const std::vector<int> edges = stencils_on_mesh("edge", mesh_);
+  std::vector<char> in(static_cast<size_t>(mesh_.vertices()), 0);
+  for (const int v : vertices) in[static_cast<size_t>(v)] = 1;
+  std::vector<int> tips;
+  for (size_t e = 0; e < edges.size(); e += 2)
+    if (in[static_cast<size_t>(edges[e])] != 0 && in[static_cast<size_t>(edges[e + 1])] != 0)
+      tips.push_back(mesh_.vertices() + static_cast<int>(e / 2));
+  hold(tips);
+}
+
 void Model::hold(const std::vector<int>& vertices, std::string_view axes) {
   for (const int v : vertices)
     for (const char axis : axes) held_[static_cast<size_t>(v)] |= static_cast<unsigned char>(1 << (axis - 'x'));

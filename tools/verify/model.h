@@ -45,6 +45,9 @@ class Model {
   // Vertices that do not move along axes, of "xyz". Adds to what was held before.
   void hold(const std::vector<int>& vertices, std::string_view axes = "xyz");
 
+  // The same of the normals of edges both of whose ends are among the vertices.
+  void hold_normals(const std::vector<int>& vertices);
+
   // Moves x to equilibrium, such that Newton's last step is below `tolerance` (m). Throws std::runtime_error where that
   // fails.
   NewtonResult solve(double tolerance);

@@ -41,10 +41,40 @@ void compare(Element element, int n, bool clamped, std::optional<double> bound, 
             fmt::format("{}x{}", n, n), sag * bending / weight, reference, bound, note});
 }
 
+// A shell of triangles as scenes make them of boxes, whose vertices may be shifted by a part of a cell.
+void compare_shell(int n, bool clamped, double shift, std::optional<double> bound, const std::string& note,
+                   const VerifyRows& rows) {
+  const double bending = young * std::pow(thickness, 3) / (12 * (1 - poisson * poisson));
+  const double reference = clamped ? 0.00126532 : 0.00406235, weight = 1e-6 * bending / reference;  // N/m^2
+  Mesh mesh = alternating_triangles(Element::tri3, {0.5, 0.5, 1}, {n, n, 1});
+  for (int v = 0; v < mesh.vertices(); ++v) {
+    auto X = mesh.X.col(v).head<2>();
+    if (X.minCoeff() > 1e-9 && X.maxCoeff() < 0.5 - 1e-9)
+      X += shift * 0.5 / n * Eigen::Vector2d(std::sin(12.9 * v), std::sin(78.2 * v));
+  }
+  Model model(mesh, true);
+  model.mirror('x');
+  model.mirror('y');
+  model.add("st_venant_kirchhoff_membrane", {{"E", {young}}, {"nu", {poisson}}, {"h", {thickness}}});
+  model.add("koiter_bending", {{"E", {young}}, {"nu", {poisson}}, {"h", {thickness}}});
+  model.add_load(lumped_masses(mesh, 1), {0, 0, -weight});
+  const std::vector<int> rim =
+      vertices_where(mesh, [](const Eigen::Vector3d& X) { return X[0] > 0.5 - 1e-9 || X[1] > 0.5 - 1e-9; });
+  model.hold(rim, clamped ? "xyz" : "z");
+  if (clamped) model.hold_normals(rim);
+  model.solve(1e-13);
+  const int middle = vertex_near(mesh, {0, 0, 0});
+  rows.add({fmt::format("{}: sag D/(q a^4)", clamped ? "clamped" : "supported"),
+            shift == 0 ? "Tri3, Koiter" : "Tri3, Koiter, irregular", fmt::format("{}x{}", n, n),
+            (mesh.X(2, middle) - model.x(2, middle)) * bending / weight, reference, bound, note});
+}
+
 void run(const VerifyRows& rows) {
   for (const bool clamped : {false, true}) {
     compare(Element::hex27, 4, clamped, clamped ? std::nullopt : std::optional(0.01), clamped ? "coarse" : "", rows);
+    compare_shell(8, clamped, 0, std::nullopt, "coarse", rows);
     if (rows.quick()) continue;
+    for (const double shift : {0.0, 0.25}) compare_shell(32, clamped, shift, 0.01, "", rows);
     compare(Element::hex27, 16, clamped, 0.01, "", rows);
     compare(Element::hex20, 24, clamped, 0.01, "", rows);
     compare(Element::tet10, 24, clamped, 0.01, "", rows);

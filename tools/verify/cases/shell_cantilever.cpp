@@ -20,25 +20,26 @@ struct StripState {
 };
 constexpr StripState states[] = {{0.25, 0.563, 3.015}, {0.5, 1.604, 4.933}, {1, 3.286, 6.698}};
 
-// Sheets turn at their vertices only: their first edges are held, and their middle is at x = 0.
-Mesh strip(Element element, int along, bool right_angled) {
+// Bending of sheets is that of hinges or of a Koiter shell.
+enum class Bending { hinges, koiter };
+
+// Sheets of hinges turn at their vertices only: their first edges are held, and their middle is at x = 0. A Koiter
+// shell has normals that are held at x = 0.
+Mesh strip(Element element, int along, bool right_angled, Bending bending) {
   if (dimension_of(element) == 3) return box_mesh(element, {length, width, thickness}, {along, 2, 1});
-  const double cell = length / (along - 0.5);
+  const double beyond = bending == Bending::koiter ? 0 : 0.5, cell = length / (along - beyond);
   const int across = std::max(1, static_cast<int>(std::lround(std::sqrt(0.75) * width / cell)));
   Mesh mesh = right_angled ? box_mesh(element, {cell * along, width, 1}, {along, across, 1})
                            : equilateral_strip(cell, along, across);
   mesh.X.row(1) *= width / mesh.X.row(1).maxCoeff();
-  mesh.X.row(0).array() -= cell / 2;
+  mesh.X.row(0).array() -= beyond * cell;
   return mesh;
 }
-
-// Bending of sheets is that of hinges or of a Koiter shell.
-enum class Bending { hinges, koiter };
 
 void compare(Element element, int along, bool right_angled, Bending bending, std::optional<double> bound,
              const std::string& note, const VerifyRows& rows) {
   const bool solid = dimension_of(element) == 3;
-  Model model(strip(element, along, right_angled), bending == Bending::koiter);
+  Model model(strip(element, along, right_angled, bending), bending == Bending::koiter);
   const Mesh& mesh = model.mesh();
   if (solid) {
     model.add("st_venant_kirchhoff", {{"E", {young}}, {"nu", {0.0}}});
@@ -49,8 +50,10 @@ void compare(Element element, int along, bool right_angled, Bending bending, std
     else
       model.add("discrete_shell_hinge", {{"k", {young * thickness * thickness * thickness / 72}}});
   }
-  const double held = solid ? 1e-9 : 0.51 * length / (along - 0.5);
-  model.hold(vertices_where(mesh, [&](const Eigen::Vector3d& X) { return X[0] < held; }));
+  const double held = solid || bending == Bending::koiter ? 1e-9 : 0.51 * length / (along - 0.5);
+  const std::vector<int> end = vertices_where(mesh, [&](const Eigen::Vector3d& X) { return X[0] < held; });
+  model.hold(end);
+  if (bending == Bending::koiter) model.hold_normals(end);
   const Eigen::VectorXd tip =
       load_shares(mesh, vertices_where(mesh, [](const Eigen::Vector3d& X) { return X[0] > length - 1e-9; })).shares;
   const int load = model.add_load(tip, Eigen::Vector3d::Zero());
