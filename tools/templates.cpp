@@ -130,10 +130,15 @@ dof      x0 x1 x2 p0 p1 p2              m                  # the points, vectors
 rest     X0[3] X1[3] X2[3]              m                  rest positions    # named like a dof with a capital: filled in
 rest     P0[3] P1[3] P2[3]              m                  of the tips
 param    k                              N/m  (0, inf)      stiffness         # a name, its unit, its range, help
-let      d = [norm2(p0 - x0), norm2(p1 - x1), norm2(p2 - x2), norm2(p0 - x1), norm2(p1 - x2), norm2(p2 - x0), norm2(p0 - x2), norm2(p1 - x0), norm2(p2 - x1)]
-let      D = [norm2(P0 - X0), norm2(P1 - X1), norm2(P2 - X2), norm2(P0 - X1), norm2(P1 - X2), norm2(P2 - X0), norm2(P0 - X2), norm2(P1 - X0), norm2(P2 - X1)]
-require  norm2(D) > 0
-value    k/8*norm2(d - D)/norm(D)
+let      a = [norm2(p0 - x0), norm2(p1 - x1), norm2(p2 - x2)]
+let      b = [norm2(p0 - x1), norm2(p1 - x2), norm2(p2 - x0)]
+let      c = [norm2(p0 - x2), norm2(p1 - x0), norm2(p2 - x1)]
+let      A = [norm2(P0 - X0), norm2(P1 - X1), norm2(P2 - X2)]
+let      B = [norm2(P0 - X1), norm2(P1 - X2), norm2(P2 - X0)]
+let      C = [norm2(P0 - X2), norm2(P1 - X0), norm2(P2 - X1)]
+require  norm2(X1 - X0) > 0
+value    k/8*(norm2(a - A) + norm2(b - B) + norm2(c - C))/norm2(X1 - X0)
+# In a scene, of an object with element = "tri3":  energy = [{ law = "NAME.energy", k = "1e-2 N/m" }]
 )"},
       {"rod_corner", "energy of two edges of a rod that twists",
        R"(# Resists twist of a rod. (This line is the summary: say what the law is for.)
