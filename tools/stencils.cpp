@@ -37,6 +37,16 @@ class Sheets {
     return flat;
   }
 
+  // Triangles, and corners of them in the sheet above, or below the last, for the tips of their normals.
+  std::vector<int> shell_triangles() const {
+    std::vector<int> flat;
+    for (size_t c = 0; c < mesh.cells.size(); c += 3) {
+      const int *t = &mesh.cells[c], other = t[0] < cells_ * size_ ? size_ : -size_;
+      flat.insert(flat.end(), {t[0], t[1], t[2], t[1] + other, t[2] + other, t[0] + other});
+    }
+    return flat;
+  }
+
   // Edges along x of one sheet with those along y of the other that they cross.
   std::vector<int> edge_edges() const {
     std::vector<int> flat;
@@ -88,7 +98,7 @@ StencilSample sample_stencils(std::string_view geometry, int cells) {
     std::vector<int> stencils = stencils_on_mesh(geometry, mesh);
     return {std::move(mesh), std::move(stencils)};
   }
-  const bool patches = geometry == "patch" || geometry == "shell_triangle" || geometry == "rod_corner";
+  const bool patches = geometry == "patch" || geometry == "rod_corner";
   Sheets sheets(patches ? std::max(cells, 2) : cells);  // two triangles are too few
   std::vector<int> stencils;
   if (geometry == "point_triangle") {
@@ -102,7 +112,7 @@ StencilSample sample_stencils(std::string_view geometry, int cells) {
   } else if (geometry == "rod_corner") {
     stencils = shortened(stencils_on_mesh("patch", sheets.mesh), 5, 6);
   } else if (geometry == "shell_triangle") {
-    stencils = stencils_on_mesh("patch", sheets.mesh);
+    stencils = sheets.shell_triangles();
   } else {
     stencils = stencils_on_mesh(geometry == "corner" ? "triangle" : geometry, sheets.mesh);
   }

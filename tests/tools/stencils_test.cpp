@@ -38,7 +38,7 @@ TEST(Stencils, SampleEdgesCross) {
 
 TEST(Stencils, EveryGeometryHasASample) {
   for (const char* geometry : {"point", "edge", "corner", "point_point", "triangle", "point_edge", "tetrahedron",
-                               "hinge", "point_triangle", "edge_edge"}) {
+                               "hinge", "shell_triangle", "rod_corner", "point_triangle", "edge_edge"}) {
     EXPECT_FALSE(sample_stencils(geometry, 2).stencils.empty()) << geometry;
   }
 }
