@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 #include "tests/scenes/finish_scene.h"
@@ -131,6 +132,56 @@ TEST(growth, shells_of_two_layers_curl_as_timoshenko_says) {
     EXPECT_NEAR(found.curvature, expected, 2e-5 * expected) << m << " " << n;
     EXPECT_LT(found.misfit, 1e-6);
   }
+}
+
+// One cell wide, so that nothing hinders it, a strip rolls up by two radians: an arc of Timoshenko's curvature over the
+// mean growth of its length.
+TEST(growth, a_strip_of_two_layers_rolls_up_to_an_arc) {
+  const double difference = 1.0 / 150;
+  const FinishedScene end = finish_text(R"toml(
+gravity = [0, 0, 0]
+[time]
+dt = 0.1
+end = 1
+integrator = "quasi_static"
+[solver]
+tolerance = 1e-9
+[[object]]
+name = "strip"
+element = "tri3"
+box = { size = [0.2, 0.01, 0.1], cells = [20, 1, 1] }
+density = 1000
+thickness = 1e-3
+fixed = [{ max = [0.0101, inf, inf] }]
+[[object.energy]]
+law = "growing_membrane"
+E = 1e6
+nu = 0
+growth = { formula = "1 + t/(300*T)", T = "1 s" }
+[[object.energy]]
+law = "bilayer_bending"
+E1 = 1e6
+E2 = 1e6
+nu = 0
+h1 = 0.5e-3
+h2 = 0.5e-3
+growth1 = { formula = "1 + t/(150*T)", T = "1 s" }
+growth2 = 1
+)toml");
+  ASSERT_EQ(end.summary.failure, "");
+  const Eigen::Matrix3Xd& X = end.built.start.x;
+  const auto at = [&](double x) {
+    int nearest = 0;
+    for (int v = 1; v < X.cols(); ++v)
+      if ((X.col(v) - Eigen::Vector3d(x, 0, 0)).norm() < (X.col(nearest) - Eigen::Vector3d(x, 0, 0)).norm())
+        nearest = v;
+    return Eigen::Vector3d(end.end.x.col(nearest));
+  };
+  const Eigen::Vector3d a = at(0.02), b = at(0.1), c = at(0.2);
+  const double curvature = 2 * (b - a).cross(c - a).norm() / ((b - a).norm() * (c - b).norm() * (c - a).norm());
+  const double expected = 1.5 * difference / 1e-3 / (1 + difference / 2);
+  EXPECT_NEAR(curvature, expected, 1e-5 * expected);
+  EXPECT_GT((c - a).norm() * curvature, 1.5) << "far from small rotations";
 }
 
 TEST(growth, hinges_curl_as_far_as_their_curvature_says) {
