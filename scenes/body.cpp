@@ -86,7 +86,7 @@ double section_of(const SceneObject& object, int dimension) {
 
 Mesh made_box(const SceneObject& object) {
   const BoxSource& box = *object.box;
-  const Element element = element_named(object.element);
+  const Element element = element_named(object.element_name());
   double cells = elements_per_brick(element);
   for (int axis = 0; axis < dimension_of(element); ++axis) cells *= box.cells[static_cast<size_t>(axis)];
   if (cells > most_cells)
@@ -113,11 +113,11 @@ Mesh filled_mesh(const SceneObject& object, const std::string& path) {
 
 Mesh file_mesh(const SceneObject& object, const std::string& path) {
   Mesh mesh = transformed(read_mesh(path), placing(object));
-  const Element wanted = element_named(object.element);
-  if (object.wrote("element") && wanted != mesh.element && degree_of(wanted) == 2 &&
+  const Element wanted = element_named(object.element_name());
+  if (object.element != "automatic" && wanted != mesh.element && degree_of(wanted) == 2 &&
       linear_element(wanted) == mesh.element)
     return to_quadratic(mesh, wanted);
-  if (object.wrote("element") && wanted != mesh.element)
+  if (object.element != "automatic" && wanted != mesh.element)
     throw SourceError(object.at("element"),
                       fmt::format("{} holds {} cells; leave 'element' out to use them", path, name_of(mesh.element)));
   return mesh;
@@ -181,7 +181,7 @@ Mesh load_mesh(const SceneObject& object, const std::string& folder) {
   else
     mesh = filled_mesh(object, path);
   // The element that is wanted of what was filled, kept or drawn.
-  const Element wanted = element_named(object.element);
+  const Element wanted = element_named(object.element_name());
   if (degree_of(wanted) == 2 && mesh.element == linear_element(wanted)) mesh = to_quadratic(mesh, wanted);
   if (!object.affine()) check_section(object, mesh.element);
   mesh.source = object.mesh.empty() ? fmt::format("{} of object '{}'", kind_of_source(object), object.name) : path;

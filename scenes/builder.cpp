@@ -135,6 +135,7 @@ StepOptions step_options(const Scene& scene) {
   StepOptions out;
   out.dt = scene.time.dt;
   out.integrator = scene.integrator();
+  out.creates_no_energy = scene.time.integrator == "automatic";
   out.tolerance = tolerance(scene);
   out.max_iterations = scene.solver.max_iterations;
   out.friction_lag_iterations = scene.solver.friction_iterations;

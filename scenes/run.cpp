@@ -74,7 +74,7 @@ ReportRecord report_of(const StepRecord& record, const BuiltScene& built, const 
               {"friction_change", record.friction_change},
               {"barrier_stiffness", record.barrier_stiffness},
               {"energy_added", record.energy_added}};
-  if (built.limits) out.more.emplace_back("refused", record.refused);
+  if (built.limits || built.step.creates_no_energy) out.more.emplace_back("refused", record.refused);
   if (built.limits && std::isfinite(built.limits->tolerance)) out.more.emplace_back("error", record.error);
   if (!built.constraints.empty()) {
     out.more.emplace_back("constraint_iterations", record.constraint_iterations);

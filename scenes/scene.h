@@ -115,7 +115,7 @@ struct SceneObject : SceneShape {
   std::string kinematics = "free";
   double stiffness = 1e8;  // Pa, of an affine body against strains
   double max_edge = 0;     // m, of the tetrahedra that fill a surface; 0: continued from the surface
-  std::string element = "tet4";
+  std::string element = "automatic";
   std::optional<int> quadrature;   // exactness; absent: the element's own
   double density = 0;              // kg/m^3
   double thickness = 0;            // m, of a membrane
@@ -132,6 +132,13 @@ struct SceneObject : SceneShape {
   std::vector<ScriptedBox> scripted;
   std::vector<SceneLoad> loads;
   std::optional<Copies> copies;  // none once a scene has been read: each is an object of its own
+
+  // Automatic is hex27 for a box: of all elements it is least off where things bend and where they are struck, at the
+  // time that it takes (docs/accuracy.md).
+  std::string element_name() const {
+    if (element != "automatic") return element;
+    return box ? "hex27" : curve ? "edge2" : "tet4";
+  }
 
   // A surface is filled with tetrahedra unless its triangles are asked for.
   bool keeps_surface() const { return element == "tri3" || element == "tri6"; }
@@ -233,12 +240,9 @@ struct Scene : Located {
   std::vector<SceneAttachment> attachments;
   std::optional<ContactSettings> contact;  // absent: surfaces do not collide, only grounds act
 
-  // One of integrator_names(). Automatic is bdf2 where nothing may touch, as it costs what implicit Euler does and its
-  // error goes with dt^2, and implicit Euler where things may: the others create energy in hard impacts.
-  std::string integrator() const {
-    if (time.integrator != "automatic") return time.integrator;
-    return contact || !grounds.empty() ? "implicit_euler" : "bdf2";
-  }
+  // One of integrator_names(). Automatic is bdf2, as it costs what implicit Euler does and its error goes with dt^2,
+  // with implicit Euler for steps in which it would create energy, as in hard impacts.
+  std::string integrator() const { return time.integrator == "automatic" ? "bdf2" : time.integrator; }
 };
 
 }  // namespace ergon

@@ -163,7 +163,8 @@ Section<SceneLoad> load_section() {
 }
 
 std::vector<std::string> element_names() {
-  return {"tet4", "tet10", "hex8", "hex20", "hex27", "prism6", "tri3", "tri6", "quad4", "quad9", "edge2", "edge3"};
+  return {"automatic", "tet4", "tet10", "hex8",  "hex20", "hex27", "prism6",
+          "tri3",      "tri6", "quad4", "quad9", "edge2", "edge3"};
 }
 
 Section<Copies> copies_section() {
@@ -234,7 +235,7 @@ void check_object(const std::string&, const SceneObject& object) {
                       "tetrahedra");
   if (object.wrote("mass") && object.wrote("points"))
     throw SourceError(object.at("mass"), "'mass' has no use here: loose points have each its own");
-  if (!object.wrote("element")) return;
+  if (!object.wrote("element") || object.element == "automatic") return;
   const auto refuse = [&](const char* why) { throw SourceError(object.at("element"), why); };
   if (filled && object.element != "tet4" && object.element != "tet10")
     refuse("a surface is filled with tetrahedra, or kept as a shell: 'element' must be tet4, tet10, tri3 or tri6");
@@ -260,7 +261,7 @@ Section<SceneObject> object_section() {
           "element", &T::element, element_names(),
           "element of a box or a surface; membranes (tri, quad) fill a box's rectangle z = 0, lines (edge) its edge "
           "along x; a surface is filled with tetrahedra (tet4, tet10), or kept as a shell (tri3, tri6); a curve is of "
-          "edge2, unless edge3 is wanted"),
+          "edge2 or edge3; automatic: hex27 for a box, tet4 for a surface, edge2 for a curve"),
       integer_key("quadrature", &T::quadrature, {0, kMaxExactness, false, false}, Need::optional,
                   "degree of polynomials that the energies' quadrature integrates exactly on an element",
                   "full integration of the element's stiffness"),

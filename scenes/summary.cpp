@@ -24,6 +24,7 @@ void add_step(RunSummary& summary, const StepRecord& record) {
   summary.linear_solves += record.factorisations - record.shifts;
   summary.factor_flops += record.factor_flops;
   summary.halvings += record.halvings;
+  summary.refused += record.refused;
   summary.most_contacts = std::max(summary.most_contacts, record.contacts);
   StepSeconds& sum = summary.step_seconds;
   sum.evaluate += record.seconds.evaluate;
@@ -75,6 +76,7 @@ std::string to_json(const RunSummary& s) {
   json["factor_flops"] = s.factor_flops;
   json["linear_iterations"] = 0;  // no iterative linear solver was used
   json["halvings"] = s.halvings;
+  json["refused"] = s.refused;
   json["most_contacts"] = s.most_contacts;
   json["smallest_gap"] = s.smallest_gap;
   json["max_energy_rise"] = s.max_energy_rise;

@@ -26,6 +26,7 @@ struct RunSummary {
   long linear_solves = 0;
   double factor_flops = 0;  // of all factorisations
   long halvings = 0;        // of line searches
+  long refused = 0;         // steps that were tried and undone
   int most_contacts = 0;
   double smallest_gap = std::numeric_limits<double>::infinity();  // m, over all steps
   // J, largest rise of kinetic and stored energy in a step, less what a change of barrier stiffness added; at most 0

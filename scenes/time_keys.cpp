@@ -34,10 +34,9 @@ Section<TimeSettings> time_section() {
       integer_key("steps", &T::steps, from_1, Need::optional, "number of time steps", "give `end` or `steps`"),
       choice_key(
           "integrator", &T::integrator, integrators(),
-          "automatic: bdf2 in a scene where nothing may touch (no [contact], no [[ground]]), else implicit_euler, "
-          "which "
-          "alone creates no energy in hard impacts; of first order implicit_euler, which damps; of second bdf2 (one "
-          "solve per step), sdirk2 and tr_bdf2 (two), "
+          "automatic: bdf2, with implicit_euler for each step in which bdf2 would make energy, as in hard impacts; of "
+          "first order implicit_euler, which "
+          "damps; of second bdf2 (one solve per step), sdirk2 and tr_bdf2 (two), "
           "which damp little, newmark, generalised_alpha and midpoint, which damp next to nothing; midpoint and "
           "generalised_alpha go on beyond the state they solve for, which contact may forbid: the step then fails; "
           "quasi_static knows no inertia: each step ends in an equilibrium, of loads (gravity, [[object.load]], and "

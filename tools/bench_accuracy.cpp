@@ -48,7 +48,10 @@ Row row_of(const AccuracyStudy& study, const AccuracyVerdict& verdict) {
           {"plain_reached", verdict.reached},
           {"plain_error", verdict.plain == nullptr ? Row() : Row(verdict.plain->error)},
           {"time_ratio", verdict.time_ratio},
-          {"work_ratio", verdict.work_ratio}};
+          {"work_ratio", verdict.work_ratio},
+          {"default", setting(verdict.by_default)},
+          {"default_time_ratio", verdict.default_time_ratio},
+          {"default_work_ratio", verdict.default_work_ratio}};
 }
 
 Row reference_row(const AccuracyStudy& study) {
@@ -64,6 +67,9 @@ std::string sentence(const AccuracyVerdict& verdict) {
   if (verdict.best == nullptr) return out + "no setting\n";
   out += fmt::format("{}: {:.3g} s, {:.3g} Gflop", verdict.best->setting.text(), seconds_of(*verdict.best),
                      work_of(*verdict.best) / 1e9);
+  if (verdict.by_default != nullptr)
+    out += fmt::format("; by default ({}) {:.3g} times the time, {:.3g} times the work",
+                       verdict.by_default->setting.text(), verdict.default_time_ratio, verdict.default_work_ratio);
   if (verdict.plain == nullptr) return out + "\n";
   const AccuracyRow& plain = *verdict.plain;
   if (verdict.reached)

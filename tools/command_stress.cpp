@@ -56,7 +56,7 @@ int stress(const StressOptions& options, std::ostream& out) {
     out << std::flush;
   };
   const auto wanted = [&](const std::string& name) { return name.find(options.only) != std::string::npos; };
-  for (const char* element : {"tet4", "tet10"}) {
+  for (const char* element : {"tet4", "tet10", "hex27"}) {
     for (const StressCase& what : stress_cases(element))
       if (wanted(what.name)) add(run_stress_case(what, element, kernels_for, steps));
     if (wanted("the same in mm")) add(run_stress_units(element, kernels_for, steps));

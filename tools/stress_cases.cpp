@@ -110,7 +110,7 @@ void add_elements(const std::string& element, std::vector<StressCase>& out) {
        World{}.text() + Block{.size = {1, 1e-4, 1e-4}, .cells = "[1, 1, 1]", .E = 1e9, .more = held}.text(element),
        {},
        {}});
-  const std::string membrane = element == "tet10" ? "tri6" : "tri3";
+  const std::string membrane = element == "tet4" ? "tri3" : element == "tet10" ? "tri6" : "quad9";
   out.push_back({"thickness 1e-5 m",
                  World{.steps = 50, .more = floor_below}.text() + R"([[object]]
 name = "sheet"

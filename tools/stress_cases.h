@@ -19,7 +19,7 @@ struct StressCase {
   bool slow = false;  // takes more than a few seconds
 };
 
-// element: tet4 or tet10; of cases of membranes tri3 or tri6, which go with these.
+// element: tet4, tet10 or hex27; of cases of membranes tri3, tri6 or quad9, which go with these.
 std::vector<StressCase> stress_cases(const std::string& element);
 
 // Scenes of the same motion, in metres and in millimetres: coordinates of the latter are 1000 times those of the

@@ -12,6 +12,12 @@
 
 namespace ergon {
 
+namespace {
+
+constexpr double created_part = 0.01;  // of the kinetic energy: what a watched step may create
+
+}  // namespace
+
 TimeStepper::TimeStepper(System& system, Eigen::VectorXd mass, Contact* contact, StepOptions options, Script script)
     : system_(&system), mass_(std::move(mass)), contact_(contact), options_(options), script_(std::move(script)) {
   resisting_mass_ = system.carriers().resisting_mass(mass_);
@@ -36,15 +42,30 @@ TimeStepper::TimeStepper(System& system, Eigen::VectorXd mass, Contact* contact,
 }
 
 StepRecord TimeStepper::step(State& state) {
+  if (!options_.creates_no_energy) return step_by(integrator_for(state), state);
+  const State before = state;
+  StepRecord record = step_by(integrator_for(state), state);
+  if (record.accepted && creates_energy(state, record)) {
+    const StepRecord refused = std::move(record);
+    state = before;
+    record = step_by("implicit_euler", state);
+    record.error = refused.error;
+    add_refused(refused, record);
+  }
+  return record;
+}
+
+StepRecord TimeStepper::step_by(const std::string& name, State& state) {
   StepRecord record;
   NewtonResult result;
   {
     const Stopwatch watch(record.seconds.total);
     record.dt = options_.dt;
+    record.integrator = name;
 
     set_internal(state);
     scripted_a_ = scripted_acceleration(state);
-    const Integrator integrator = integrator_for(state);
+    const Integrator integrator = integrator_named(name, state.last_dt > 0 ? options_.dt / state.last_dt : 1);
     if (integrator.has_inertia && system_->damps()) lag_stiffness(state);
     if (known_.x.cols() == 0 || known_.x != state.x) energies(state);
     std::vector<Moment> moments = known_moments(state, integrator);
@@ -74,12 +95,19 @@ StepRecord TimeStepper::step(State& state) {
 // A two-step method knows no last step at the first, and none that was made before a jump of the state. Where the
 // incremental potential is not convex at the start, as of a body that is pressed flat, dt does not resolve what comes
 // next, and implicit Euler goes down in energy all the same.
-Integrator TimeStepper::integrator_for(const State& state) {
-  const bool first = state.last_dt == 0;
-  const Integrator integrator = integrator_named(options_.integrator, first ? 1 : options_.dt / state.last_dt);
-  if (!integrator.two_step || !first) return integrator;
+std::string TimeStepper::integrator_for(const State& state) {
+  if (state.last_dt > 0 || !integrator_named(options_.integrator).two_step) return options_.integrator;
   prepare_at(state);
-  return integrator_named(newton_.is_minimum(*system_, state.x) ? "sdirk2" : "implicit_euler");
+  return newton_.is_minimum(*system_, state.x) ? "sdirk2" : "implicit_euler";
+}
+
+// More than what a motion at the solver's tolerance has: in sum since the start, and in one step beside what moves. A
+// linear motion that dt resolves has no step in which bdf2 makes energy; after a collision that it does not resolve,
+// bdf2 would go on with velocities that the collision has ended.
+bool TimeStepper::creates_energy(const State& after, const StepRecord& record) const {
+  const double slack = mass_.sum() * options_.tolerance * options_.tolerance / 2;
+  const double moving = std::max(kinetic_energy(after.last_v), record.energy.kinetic);
+  return after.dissipated < -slack || record.budget.integrator < -slack - created_part * moving;
 }
 
 std::vector<Moment> TimeStepper::known_moments(const State& state, const Integrator& integrator) {

@@ -46,7 +46,8 @@ struct State {
   double last_dt = 0;  // s
   // What energies renew themselves, by potential; empty where no step has ended yet: then it is 0.
   std::vector<StencilData> internal;
-  double time = 0;  // s
+  double dissipated = 0;  // J, by integrators since the start
+  double time = 0;        // s
   long step = 0;
 };
 
@@ -64,7 +65,11 @@ struct StepOptions {
   bool record_forces = false;       // of contact, in the record of each step
   bool accept_unconverged = false;  // go on from the best state found; the record still says so
   bool estimate_error = false;      // of the integrator, in the record of each step
-  int points = -1;                  // vertices that are points of space, of whose momentum a step tells; -1: all
+  // A step that would make more energy than integrators have dissipated since the start, or more than a hundredth of
+  // the kinetic energy, is made anew by implicit Euler, which makes none: kinetic and stored energy never exceed those
+  // of the start and the work done since.
+  bool creates_no_energy = false;
+  int points = -1;  // vertices that are points of space, of whose momentum a step tells; -1: all
 };
 
 // A potential of a load, and the values of the param that is in proportion to it.
@@ -134,7 +139,8 @@ struct StepRecord {
   Budget budget;                                                  // of a step that was accepted
   Momentum momentum;
   double load_factor = 1;  // of the state after the step
-  int refused = 0;         // longer steps that were tried before
+  int refused = 0;         // steps that were tried before and undone
+  std::string integrator;  // that made the step
   Energies energy;
   std::optional<ContactForces> forces;  // at the end of the step, friction as the last solve had it
   StepSeconds seconds;
@@ -178,7 +184,9 @@ class TimeStepper {
   struct Balance {
     Eigen::Matrix3Xd stored, friction, damping, a, way;
   };
-  Integrator integrator_for(const State& state);
+  std::string integrator_for(const State& state);
+  StepRecord step_by(const std::string& integrator, State& state);
+  bool creates_energy(const State& after, const StepRecord& record) const;
   std::vector<Moment> known_moments(const State& state, const Integrator& integrator);
   Solve stage_of(const State& state, const Stage& stage, const std::vector<Moment>& moments) const;
   Moment moment_of(const State& state, const Stage& stage, const std::vector<Moment>& moments,
@@ -206,7 +214,7 @@ class TimeStepper {
   NewtonResult solve(const Solve& stage, Eigen::Matrix3Xd& x, StepRecord& record);
   ContactForces forces(const Eigen::Matrix3Xd& x);
   void advance(State& state, const Moment& end);
-  void report(const State& state, const NewtonResult& result, StepRecord& record);
+  void report(State& state, const NewtonResult& result, StepRecord& record);
   bool is_stored(int potential) const;
   double kinetic_energy(const Eigen::Matrix3Xd& v) const;
   Eigen::Matrix3Xd mass_times(const Eigen::Matrix3Xd& field) const;

@@ -24,7 +24,7 @@ Evaluation evaluate_renewed(System& system, const State& state, const Evaluation
 
 }  // namespace
 
-void TimeStepper::report(const State& state, const NewtonResult& result, StepRecord& record) {
+void TimeStepper::report(State& state, const NewtonResult& result, StepRecord& record) {
   record.step = state.step;
   record.time = state.time;
   record.converged = result.converged;
@@ -51,6 +51,7 @@ void TimeStepper::report(const State& state, const NewtonResult& result, StepRec
     record.budget.damping += flow;
     record.budget.integrator -= flow;
   }
+  state.dissipated += record.budget.integrator;
   known_ = {state.x, after.by_potential, balance_};
   const Eigen::Matrix3Xd momenta = mass_times(state.v);
   for (int v = 0; v < (options_.points < 0 ? system_->vertices() : options_.points); ++v) {

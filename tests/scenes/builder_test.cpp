@@ -19,6 +19,7 @@ const std::string block = R"(
 [[object]]
 name = "block"
 box = { size = [0.1, 0.2, 0.3], cells = [2, 2, 2] }
+element = "tet4"
 translate = [0, 0, 0.1]
 density = 1000
 velocity = [1, 0, 0]
@@ -110,6 +111,7 @@ TEST(builder, moves_an_object_by_scale_then_rotation_then_translation) {
 [[object]]
 name = "block"
 box = { size = [0.1, 0.2, 0.3], cells = [1, 1, 1] }
+element = "tet4"
 scale = 2
 rotate = ["90 deg", "90 deg", 0]
 translate = [1, 2, 3]

@@ -114,6 +114,7 @@ integrator = "quasi_static"
 [[object]]
 name = "box"
 box = { size = [0.1, 0.1, 0.1], cells = [1, 1, 1] }
+element = "tet4"
 density = 1000
 mass_damping = 5
 fixed = [{ max = [1e-9, inf, inf] }]

@@ -14,6 +14,7 @@ steps = 2
 [[object]]
 name = "block"
 box = { size = [0.1, 0.2, 0.3], cells = [1, 1, 1] }
+element = "tet4"
 density = 1000
 [[object.energy]]
 )";

@@ -20,6 +20,7 @@ steps = 3
 [[object]]
 name = "block"
 box = { size = [1, 1, 1], cells = [1, 2, 3] }
+element = "tet4"
 density = 1000
 energy = [{ law = "stable_neo_hookean", E = "0.5 MPa", nu = 0.4 }]
 )";
@@ -60,6 +61,7 @@ end = "2 s"
 [[object]]
 name = "block"
 box = { size = ["10 cm", "1mm", 1e-1], cells = [1, 1, 1] }
+element = "tet4"
 rotate = ["90 deg", 0, 0]
 density = "1 g/cm^3"
 velocity = ["36 km/h", 0, 0]

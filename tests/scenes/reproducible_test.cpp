@@ -28,12 +28,14 @@ mu = 0.4
 [[object]]
 name = "block"
 box = { size = [0.1, 0.1, 0.1], cells = [4, 4, 4] }
+element = "tet4"
 translate = [0, 0, 0.01]
 density = 1000
 energy = [{ law = "stable_neo_hookean", E = "0.1 MPa", nu = 0.4 }]
 [[object]]
 name = "tilted"
 box = { size = [0.1, 0.1, 0.1], cells = [3, 3, 3] }
+element = "tet4"
 rotate = ["20 deg", "10 deg", 0]
 translate = [0.02, -0.01, 0.15]
 density = 500

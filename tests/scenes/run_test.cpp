@@ -24,6 +24,7 @@ steps = 30
 [[object]]
 name = "block"
 box = { size = [0.1, 0.1, 0.1], cells = [2, 2, 2] }
+element = "tet4"
 translate = [0, 0, 0.02]
 velocity = [0.5, 0, 0]
 density = 1000

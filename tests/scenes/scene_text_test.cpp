@@ -23,6 +23,7 @@ energy = [{ law = "neo_hookean", E = "1 MPa", nu = 0.3 }, { law = "../my.energy"
 [[object]]
 name = "mass"
 box = { size = [1, 1, 1], cells = [1, 1, 1] }
+element = "tet4"
 density = 500
 energy = [{ law = "stable_neo_hookean", E = 1e5, nu = 0.3 }]
 )";

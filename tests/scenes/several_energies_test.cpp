@@ -20,6 +20,7 @@ tolerance = 1e-8
 [[object]]
 name = "block"
 box = { size = [0.2, 0.1, 0.1], cells = [2, 1, 1] }
+element = "tet4"
 density = 1000
 [[object.energy]]
 law = "neo_hookean"

@@ -37,14 +37,15 @@ TEST(AccuracyStudy, TheFrontHoldsWhatNothingBeatsInBoth) {
   AccuracyStudy study;
   study.rows = {row("tet4", "implicit_euler", 0.4, 10, 1),  row("tet4", "bdf2", 0.3, 10, 2),
                 row("tet4", "implicit_euler", 0.2, 40, 30), row("hex20", "bdf2", 0.009, 30, 3),
-                row("hex20", "bdf2", 0.02, 50, 2),          row("hex20", "bdf2", 0.05, 5, 9)};
+                row("hex20", "bdf2", 0.02, 50, 2),          row("hex20", "bdf2", 0.05, 5, 9),
+                row("hex27", "automatic", 0.008, 45, 9)};
   study.rows[5].run.failure = "step 1 failed";
   const auto all = [](const AccuracySetting&) { return true; };
   const auto work = front(study.rows, work_of, all), time = front(study.rows, seconds_of, all);
-  ASSERT_EQ(work.size(), 2u);
+  ASSERT_EQ(work.size(), 3u);
   EXPECT_EQ(work[0], &study.rows[1]);
   EXPECT_EQ(work[1], &study.rows[3]);
-  ASSERT_EQ(time.size(), 3u);
+  ASSERT_EQ(time.size(), 4u);
   EXPECT_EQ(time[0], &study.rows[0]);
   EXPECT_EQ(time[1], &study.rows[4]);
   EXPECT_EQ(time[2], &study.rows[3]);
@@ -57,6 +58,10 @@ TEST(AccuracyStudy, TheFrontHoldsWhatNothingBeatsInBoth) {
   EXPECT_FALSE(said[1].reached);
   EXPECT_EQ(said[1].time_ratio, 10);
   EXPECT_EQ(said[1].work_ratio, 40.0 / 30);
+  EXPECT_EQ(said[1].by_default, &study.rows[6]);
+  EXPECT_EQ(said[1].default_time_ratio, 3);
+  EXPECT_EQ(said[1].default_work_ratio, 1.5);
+  EXPECT_EQ(said[2].by_default, nullptr);
   EXPECT_EQ(said[2].best, nullptr);
   EXPECT_EQ(said[2].time_ratio, 0);
 }
@@ -88,19 +93,20 @@ TEST_F(BenchAccuracyCommand, BriefRunsTellErrorsAndWork) {
   const auto error = [&](int i) { return all[static_cast<size_t>(i)]["error"].get<double>(); };
   EXPECT_EQ(all[1]["element"], "tet4");
   EXPECT_EQ(all[4]["element"], "hex20");
-  EXPECT_EQ(all[4]["integrator"], "bdf2");
+  EXPECT_EQ(all[4]["integrator"], "automatic");
   EXPECT_LT(error(4), 0.05);
   EXPECT_GT(error(1), 5 * error(4));
   EXPECT_LT(all[4]["work"], all[1]["work"]);
   EXPECT_EQ(all[4]["least_work"], true);
   EXPECT_EQ(all[1]["least_work"], false);
   EXPECT_EQ(all[5]["within"], 0.1);
-  EXPECT_EQ(all[5]["best"], "hex20 [1, 1, 8] bdf2 dt 0.05 s");
+  EXPECT_EQ(all[5]["best"], "hex20 [1, 1, 8] automatic dt 0.05 s");
   EXPECT_EQ(all[5]["plain_reached"], false);
   EXPECT_GT(all[5]["work_ratio"], 2);
+  EXPECT_EQ(all[5]["default"], nullptr);  // of hex27 there is none in brief runs
   EXPECT_EQ(test::fault_of_xml(read("found/cloth.svg")), "");
   EXPECT_THAT(read("found/cloth.svg"), HasSubstr("Pareto front"));
-  EXPECT_THAT(read("found/accuracy.csv"), HasSubstr("cloth,run,quad9,\"[4, 4, 1]\",bdf2,0.05,"));
+  EXPECT_THAT(read("found/accuracy.csv"), HasSubstr("cloth,run,quad9,\"[4, 4, 1]\",automatic,0.05,"));
 
   EXPECT_EQ(rows(command), all);  // seconds too
   EXPECT_THAT(ergon("bench accuracy --brief --problem cloth --out found").out,

@@ -10,7 +10,7 @@ namespace ergon {
 namespace {
 
 class SlowStress : public testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(, SlowStress, testing::Values("tet4", "tet10"));
+INSTANTIATE_TEST_SUITE_P(, SlowStress, testing::Values("tet4", "tet10", "hex27"));
 
 TEST_P(SlowStress, EveryCaseHoldsForAFewSteps) {
   const std::vector<StressCase> cases = stress_cases(GetParam());

@@ -5,11 +5,22 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "scenes/scene.h"
+
 namespace ergon {
 namespace {
 
 bool is_plain(const AccuracySetting& setting) {
   return (setting.element == "tet4" || setting.element == "tri3") && setting.integrator == "implicit_euler";
+}
+
+bool is_default(const AccuracySetting& setting) {
+  const AccuracySetting usual;
+  SceneObject block;
+  block.box.emplace();
+  return (setting.element == block.element_name() || setting.element == "quad9") &&
+         setting.integrator == TimeSettings{}.integrator && setting.tolerance == usual.tolerance &&
+         setting.precision == usual.precision && setting.time_tolerance == 0;
 }
 
 // Of the plain ones: neither its mesh nor its step lets any setting be as accurate.
@@ -94,8 +105,10 @@ std::vector<AccuracyVerdict> verdicts(const AccuracyStudy& study) {
   std::vector<AccuracyVerdict> out;
   const auto all = [](const AccuracySetting&) { return true; };
   for (const double error : {0.1, 0.01, 0.001}) {
-    AccuracyVerdict verdict{
-        error, cheapest(study.rows, work_of, all, error), cheapest(study.rows, work_of, is_plain, error), true, 0, 0};
+    AccuracyVerdict verdict{.error = error,
+                            .best = cheapest(study.rows, work_of, all, error),
+                            .plain = cheapest(study.rows, work_of, is_plain, error),
+                            .reached = true};
     if (verdict.plain == nullptr) {
       verdict.reached = false;
       verdict.plain = costliest_short_of(study.rows, error);
@@ -103,6 +116,11 @@ std::vector<AccuracyVerdict> verdicts(const AccuracyStudy& study) {
     if (verdict.best != nullptr && verdict.plain != nullptr) {
       verdict.time_ratio = seconds_of(*verdict.plain) / seconds_of(*verdict.best);
       verdict.work_ratio = work_of(*verdict.plain) / work_of(*verdict.best);
+    }
+    verdict.by_default = cheapest(study.rows, work_of, is_default, error);
+    if (verdict.by_default != nullptr) {
+      verdict.default_time_ratio = seconds_of(*verdict.by_default) / seconds_of(*verdict.best);
+      verdict.default_work_ratio = work_of(*verdict.by_default) / work_of(*verdict.best);
     }
     out.push_back(verdict);
   }
