@@ -19,12 +19,12 @@ const std::string block = R"(
 [[object]]
 name = "block"
 box = { size = [0.1, 0.2, 0.3], cells = [2, 2, 2] }
-element = "tet4"
 translate = [0, 0, 0.1]
 density = 1000
 velocity = [1, 0, 0]
 energy = [{ law = "stable_neo_hookean", E = "0.5 MPa", nu = 0.4 }]
 )";
+const std::string tets = block + "element = \"tet4\"\n";
 
 // The laws whose kernels a scene asks for.
 std::vector<std::string> kernels_of(const std::string& text) {
@@ -62,16 +62,18 @@ TEST(builder, asks_only_for_the_kernels_that_are_used_and_says_what_is_left_out)
 }
 
 // Drag takes what it says from a body that flies free of other forces; a dashpot between its points takes nothing.
-TEST(builder, takes_the_integrator_that_the_scene_needs) {
-  const auto integrator = [](const std::string& more) {
-    return build_text("[time]\ndt = 0.01\nsteps = 2\n" + more + block).step.integrator;
+TEST(builder, takes_bdf2_that_makes_no_energy_unless_told_which_integrator) {
+  const auto step = [](const std::string& more) {
+    return build_text("[time]\ndt = 0.01\nsteps = 2\n" + more + block).step;
   };
-  EXPECT_EQ(integrator(""), "bdf2");
-  EXPECT_EQ(integrator("integrator = \"automatic\"\n"), "bdf2");
-  EXPECT_EQ(integrator("integrator = \"newmark\"\n"), "newmark");
-  EXPECT_EQ(integrator("[contact]\n"), "implicit_euler");
-  EXPECT_EQ(integrator("[[ground]]\nheight = -1\n"), "implicit_euler");
-  EXPECT_EQ(integrator("integrator = \"bdf2\"\n[contact]\n"), "bdf2");
+  for (const char* more : {"", "integrator = \"automatic\"\n", "[contact]\n"}) {
+    EXPECT_EQ(step(more).integrator, "bdf2");
+    EXPECT_TRUE(step(more).creates_no_energy);
+  }
+  for (const std::string name : {"newmark", "bdf2", "implicit_euler"}) {
+    EXPECT_EQ(step("integrator = \"" + name + "\"\n").integrator, name);
+    EXPECT_FALSE(step("integrator = \"" + name + "\"\n").creates_no_energy);
+  }
 }
 
 TEST(builder, damping_takes_its_lags_from_the_step) {
@@ -88,9 +90,10 @@ TEST(builder, damping_takes_its_lags_from_the_step) {
 }
 
 TEST(builder, lays_out_masses_velocities_and_fixed_vertices) {
-  BuiltScene built = build_text(time_part + block + "fixed = [{ max = [inf, inf, 0.1001] }]\n" +
-                                "[[object]]\nname = \"other\"\nbox = { size = [1, 1, 1], cells = [1, 1, 1] }\n"
-                                "density = 7\nenergy = [{ law = \"stable_neo_hookean\", E = 1, nu = 0 }]\n");
+  BuiltScene built =
+      build_text(time_part + tets + "fixed = [{ max = [inf, inf, 0.1001] }]\n" +
+                 "[[object]]\nname = \"other\"\nbox = { size = [1, 1, 1], cells = [1, 1, 1] }\nelement = \"tet4\"\n"
+                 "density = 7\nenergy = [{ law = \"stable_neo_hookean\", E = 1, nu = 0 }]\n");
   ASSERT_EQ(built.bodies.size(), 2u);
   EXPECT_EQ(built.bodies[1].first_vertex, 27);
   EXPECT_EQ(built.system->vertices(), 35);
@@ -160,7 +163,7 @@ energy = [{ law = "spring", k = "1 N/cm" }, { law = "gravity", g = [0, "-1.6 m/s
 // What is emitted for a density knows nothing of elements: Hex27 takes no more source than Tet4.
 TEST(builder, one_kernel_serves_all_elements) {
   using testing::ElementsAre;
-  std::string text = time_part + block;
+  std::string text = time_part + tets;
   for (const char* element : {"tet10", "hex20", "hex27", "prism6"}) {
     std::string other = block;
     other.replace(other.find("\"block\""), 7, "\"" + std::string(element) + "\"\nelement = \"" + element + "\"");

@@ -14,13 +14,14 @@ namespace {
 using testing::HasSubstr;
 
 std::string block(const std::string& name, const std::string& keys) {
-  return "[[object]]\nname = \"" + name + "\"\nbox = { size = [0.1, 0.1, 0.1], cells = [2, 2, 2] }\ndensity = 1000\n" +
-         keys + "[[object.energy]]\nlaw = \"stable_neo_hookean\"\nE = 1e5\nnu = 0.3\n";
+  return "[[object]]\nname = \"" + name +
+         "\"\nbox = { size = [0.1, 0.1, 0.1], cells = [2, 2, 2] }\nelement = \"tet4\"\ndensity = 1000\n" + keys +
+         "[[object.energy]]\nlaw = \"stable_neo_hookean\"\nE = 1e5\nnu = 0.3\n";
 }
 
 std::string settings(const std::string& gravity, double dt, int steps, const std::string& contact = "") {
   return "gravity = " + gravity + "\n[time]\ndt = " + std::to_string(dt) + "\nsteps = " + std::to_string(steps) +
-         "\n[contact]\n" + contact;
+         "\nintegrator = \"implicit_euler\"\n[contact]\n" + contact;
 }
 
 Eigen::Vector3d mean(const Eigen::Matrix3Xd& x, int first, int count) {
@@ -61,7 +62,8 @@ TEST(Contact, BlockOnASlopeStaysOrSlidesAsCoulombSays) {
       "-0.1]\n";
   for (const double mu : {0.6, 0.3}) {
     const std::string block =
-        "[[object]]\nname = \"block\"\nbox = { size = [0.1, 0.1, 0.05], cells = [2, 2, 1] }\nrotate = [0, 0, 0.2]\n"
+        "[[object]]\nname = \"block\"\nbox = { size = [0.1, 0.1, 0.05], cells = [2, 2, 1] }\nelement = "
+        "\"tet4\"\nrotate = [0, 0, 0.2]\n"
         "translate = [0, 0, 0.000774]\ndensity = 1000\n[[object.energy]]\nlaw = \"stable_neo_hookean\"\nE = 1e7\n"
         "nu = 0.3\n[solver]\nfriction_iterations = 10\nfriction_tolerance = 1e-3\n";
     const FinishedScene run =
@@ -152,14 +154,14 @@ TEST(Contact, OffsetsKeepSurfacesApart) {
 }
 
 TEST(Contact, MatTwistedByItsEndsReachesItsScript) {
-  const FinishedScene run =
-      finish_text(settings("[0, 0, 0]", 0.02, 25) +
-                  "[[object]]\nname = \"mat\"\nbox = { size = [0.4, 0.1, 0.02], cells = [8, 2, 1] }\ndensity = 1000\n"
-                  "[[object.energy]]\nlaw = \"stable_neo_hookean\"\nE = 1e5\nnu = 0.3\n"
-                  "[[object.fixed]]\nmax = [0.001, inf, inf]\n"
-                  "[[object.scripted]]\nmin = [0.399, -inf, -inf]\ncenter = [0.4, 0.05, "
-                  "0.01]\n[[object.scripted.key]]\ntime = 0.5\n"
-                  "rotate = [\"180 deg\", 0, 0]\n");
+  const FinishedScene run = finish_text(settings("[0, 0, 0]", 0.02, 25) +
+                                        "[[object]]\nname = \"mat\"\nbox = { size = [0.4, 0.1, 0.02], cells = [8, 2, "
+                                        "1] }\nelement = \"tet4\"\ndensity = 1000\n"
+                                        "[[object.energy]]\nlaw = \"stable_neo_hookean\"\nE = 1e5\nnu = 0.3\n"
+                                        "[[object.fixed]]\nmax = [0.001, inf, inf]\n"
+                                        "[[object.scripted]]\nmin = [0.399, -inf, -inf]\ncenter = [0.4, 0.05, "
+                                        "0.01]\n[[object.scripted.key]]\ntime = 0.5\n"
+                                        "rotate = [\"180 deg\", 0, 0]\n");
   ASSERT_EQ(run.summary.failure, "");
   for (int v = 0; v < run.end.x.cols(); ++v) {
     const Eigen::Vector3d X = run.built.start.x.col(v);

@@ -46,7 +46,7 @@ TEST(energy_text, what_is_unsound_in_it_is_told_with_the_line_of_the_scene) {
       "text = '''\ndensity  prestressed  solid\nparam    k  Pa  (0, inf)\nvalue    k*norm2(F)\n'''\n";
   const BuiltScene built = build_text(before + text + "k = 1\n", "b.toml");
   ASSERT_EQ(built.warnings.size(), 1u);
-  EXPECT_THAT(built.warnings[0], testing::StartsWith("b.toml:12:10: not stress-free at F = I"));
+  EXPECT_THAT(built.warnings[0], testing::StartsWith("b.toml:13:10: not stress-free at F = I"));
 }
 
 TEST(energy_text, survives_a_sweep) {

@@ -66,11 +66,11 @@ INSTANTIATE_TEST_SUITE_P(shipped, SlowNothingLost,
 TEST(StartNoise, FollowsFromTheSeedAlone) {
   const auto velocities = [](int seed, const std::string& kinematics) {
     const std::string energy = "[[object.energy]]\nlaw = \"stable_neo_hookean\"\nE = 1e5\nnu = 0.3\n";
-    const std::string text =
-        "[time]\ndt = 0.01\nsteps = 1\n[start]\nnoise = 0.5\nseed = " + std::to_string(seed) +
-        "\n[[object]]\nname = \"a\"\nbox = { size = [1, 1, 1], cells = [1, 1, 1] }\nvelocity = [3, 0, 0]\n"
-        "density = 1000\n" +
-        kinematics;
+    const std::string text = "[time]\ndt = 0.01\nsteps = 1\n[start]\nnoise = 0.5\nseed = " + std::to_string(seed) +
+                             "\n[[object]]\nname = \"a\"\nbox = { size = [1, 1, 1], cells = [1, 1, 1] }\nelement = "
+                             "\"tet4\"\nvelocity = [3, 0, 0]\n"
+                             "density = 1000\n" +
+                             kinematics;
     return build_scene(
         read_scene_text(text + (kinematics.empty() ? energy + "[[object.fixed]]\nmax = [inf, inf, 0]\n" : ""),
                         "a.toml"),

@@ -48,7 +48,7 @@ TEST(reader, keeps_params_as_written_with_unit_and_place) {
   EXPECT_DOUBLE_EQ(E.components[0].value, 5e5);
   EXPECT_EQ(to_string(*E.components[0].unit), "Pa");
   EXPECT_EQ(E.components[0].text, "0.5 MPa");
-  EXPECT_EQ(to_string(E.key_place), "a.toml:9:41");
+  EXPECT_EQ(to_string(E.key_place), "a.toml:10:41");
   EXPECT_FALSE(scene.objects[0].energies[0].params.at("nu").components[0].unit.has_value());
 }
 
