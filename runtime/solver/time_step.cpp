@@ -14,7 +14,8 @@ namespace ergon {
 
 namespace {
 
-constexpr double created_part = 0.01;  // of the kinetic energy: what a watched step may create
+constexpr double created_part = 0.01;             // of the kinetic energy: what a watched step may create
+constexpr const char* damped = "implicit_euler";  // of all integrators, creates the least
 
 }  // namespace
 
@@ -45,10 +46,10 @@ StepRecord TimeStepper::step(State& state) {
   if (!options_.creates_no_energy) return step_by(integrator_for(state), state);
   const State before = state;
   StepRecord record = step_by(integrator_for(state), state);
-  if (record.accepted && creates_energy(state, record)) {
+  if (record.accepted && record.integrator != damped && creates_energy(state, record)) {
     const StepRecord refused = std::move(record);
     state = before;
-    record = step_by("implicit_euler", state);
+    record = step_by(damped, state);
     record.error = refused.error;
     add_refused(refused, record);
   }
@@ -98,7 +99,7 @@ StepRecord TimeStepper::step_by(const std::string& name, State& state) {
 std::string TimeStepper::integrator_for(const State& state) {
   if (state.last_dt > 0 || !integrator_named(options_.integrator).two_step) return options_.integrator;
   prepare_at(state);
-  return newton_.is_minimum(*system_, state.x) ? "sdirk2" : "implicit_euler";
+  return newton_.is_minimum(*system_, state.x) ? "sdirk2" : damped;
 }
 
 // More than what a motion at the solver's tolerance has: in sum since the start, and in one step beside what moves. A

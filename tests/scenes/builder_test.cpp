@@ -128,7 +128,7 @@ energy = [{ law = "stable_neo_hookean", E = "0.5 MPa", nu = 0.4 }]
 }
 
 TEST(builder, keeps_the_order_of_the_mesh_beside_the_order_of_computing) {
-  const BuiltScene built = build_text(time_part + block);
+  const BuiltScene built = build_text(time_part + tets);
   const Body& body = built.bodies[0];
   ASSERT_EQ(body.vertex_from.size(), 27u);
   for (size_t i = 0; i < 27; ++i)
@@ -178,8 +178,9 @@ TEST(builder, quadrature_is_chosen_by_its_exactness) {
   const auto points = [](const std::string& keys) {
     return build_text(time_part + block + keys).system->potential(0).quadrature_points();
   };
-  EXPECT_EQ(points(""), 1);
-  EXPECT_EQ(points("quadrature = 2\n"), 4);
+  EXPECT_EQ(points(""), 27);  // of Hex27, as a box has it unless its element is stated
+  EXPECT_EQ(points("element = \"tet4\"\n"), 1);
+  EXPECT_EQ(points("element = \"tet4\"\nquadrature = 2\n"), 4);
   EXPECT_EQ(points("element = \"hex8\"\n"), 8);
   EXPECT_EQ(points("element = \"hex8\"\nquadrature = 0\n"), 1);
   EXPECT_EQ(points("element = \"hex27\"\nquadrature = 7\n"), 64);

@@ -208,7 +208,7 @@ TEST(Contact, StartWithIntersectionsNamesThemAndCanBeLookedAt) {
 TEST(Contact, FixedStiffnessOfABarrierThatIsFiniteAtContactIsRefused) {
   EXPECT_EQ(
       start_error(settings("[0, 0, 0]", 0.01, 1, "barrier = \"cubic_barrier\"\nstiffness = 1e6\n") + block("one", "")),
-      "a.toml:6:11: contact: the barrier's force at a gap of 1e-09 dhat is 0.002 N per unit of its stiffness and "
+      "a.toml:7:11: contact: the barrier's force at a gap of 1e-09 dhat is 0.002 N per unit of its stiffness and "
       "does not grow towards contact, so that a fixed stiffness keeps nothing apart; leave 'stiffness' out, or "
       "use a barrier that is infinite there, as log_barrier");
 }
