@@ -66,8 +66,8 @@ struct StepOptions {
   bool accept_unconverged = false;  // go on from the best state found; the record still says so
   bool estimate_error = false;      // of the integrator, in the record of each step
   // A step that would make more energy than integrators have dissipated since the start, or more than a hundredth of
-  // the kinetic energy, is made anew by implicit Euler, which makes none: kinetic and stored energy never exceed those
-  // of the start and the work done since.
+  // the kinetic energy, is made anew by implicit Euler, which makes none where the incremental potential is convex:
+  // kinetic and stored energy then never exceed those of the start and the work done since.
   bool creates_no_energy = false;
   int points = -1;  // vertices that are points of space, of whose momentum a step tells; -1: all
 };
