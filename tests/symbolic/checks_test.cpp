@@ -60,6 +60,7 @@ TEST(Checks, SolidsAreCheckedExactly) {
                 "ok stiffness: every small strain costs energy from 0.01 to 3.79 times the "
                 "length along one axis, 0.01 to 2.67 along two, 0.01 to 100 along three, and up to "
                 "a shear of 4 (E = 1, nu = 0.3)",
+                "ok symmetry: isotropic",
                 "ok collapse: the value grows without bound as the length along one axis "
                 "falls to 0",
                 "ok inversion: not finite at inversion; `require` keeps away from it"}));

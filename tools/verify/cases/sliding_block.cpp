@@ -32,9 +32,11 @@ epsv = 1e-4
 }
 
 void run(const VerifyRows& rows) {
-  // The plane is level here, and gravity turned by atan(1/2).
-  const SceneCase slope =
-      run_scene_case("slope", scene("[4.38717, 0, -8.77433]", "dt = 0.01\nend = 2.5", 0.49, "[0, 0, 0]"));
+  // The plane is level here, and gravity turned by atan(1/2). Put down from 0.8 mm, the block must not bounce: in
+  // flight it gains speed, of which the next impact takes less where it sticks.
+  const SceneCase slope = run_scene_case(
+      "slope",
+      scene("[4.38717, 0, -8.77433]", "dt = 0.01\nend = 2.5\nintegrator = \"implicit_euler\"", 0.49, "[0, 0, 0]"));
   rows.add({"slope of atan(1/2), mu 0.49: acceleration (m/s^2)", "affine body", "1 block", slope.velocity().x() / 2.5,
             0.087743});
   for (const double mu : {0.1, 0.3, 0.5}) {
