@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 struct Bounced {
   double least_dissipated = std::numeric_limits<double>::infinity();  // J, since the start
   double most_gained = -std::numeric_limits<double>::infinity();      // J, kinetic and stored, since the start
-  double most_made = 0;  // in a step, of the kinetic energy
+  double most_made = 0;                                               // in a step, of the kinetic energy
   int refused = 0;
   std::map<std::string, int> steps;  // by integrator
 };
