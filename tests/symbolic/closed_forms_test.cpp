@@ -94,6 +94,10 @@ std::vector<Form> points() {
   const Values O = {0, 0, 0}, end = {0, 3, 4}, x = {1, 2, 3}, start = {0, 1.5, 2};
   return {
       {"spring", {{"x0", O}, {"x1", end}, {"X0", O}, {"X1", {4, 0, 0}}, {"k", {2}}}, 4, 2 * 1 * 0.6},
+      {"distance_limit",
+       {{"x0", O}, {"x1", end}, {"X0", O}, {"X1", {4, 0, 0}}, {"k", {2}}, {"threshold", {1}}, {"limit", {1.5}}},
+       4,
+       2 * (std::log(2) + 0.5) / 0.5 * 0.6},
       {"damper",
        {{"x0", O}, {"x1", end}, {"x0lag", O}, {"x1lag", start}, {"c", {2}}, {"dt", {0.5}}},
        4,
