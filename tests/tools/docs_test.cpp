@@ -118,9 +118,11 @@ class SlowReadme : public CommandTest {};
 TEST_F(SlowReadme, EveryCommandWorks) {
   const std::string text = file_text("README.md");
   EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 150);
-  for (const char* name : {"energies", "scenes", "docs"}) {
+  for (const char* name : {"energies", "docs"}) {
     std::filesystem::create_symlink(test::source("/") + name, folder / name);
   }
+  // Laws beside it are named as "../LAW", which leads elsewhere from a link.
+  std::filesystem::copy(test::source("/scenes"), folder / "scenes", std::filesystem::copy_options::recursive);
   std::filesystem::create_symlink(test::built(), folder / "build");
   int commands = 0;
   for (const std::string& block : blocks(text, "sh")) {
