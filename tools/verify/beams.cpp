@@ -41,6 +41,14 @@ Beam make_beam(const BeamForm& form) {
     out.element = name_of(form.element);
     out.mesh = fmt::format("{}x{}", form.along, form.across);
     if (degree_of(form.element) == 1) out.limits = "locks in bending";
+    if (form.element == Element::hex8 && form.across == 1) {
+      // Bent by a curvature c, a trilinear cell of the length l shears by c*x, -l/2 < x < l/2: beside E c^2 h^2/24 of
+      // bending there are G c^2 l^2/24 of energy per volume, with E = 2 G here.
+      const double slender = 1 / (form.along * form.height);
+      out.locks_by = 1 + slender * slender / 2;
+      out.limits = fmt::format("locks in bending: it shears, which makes it 1 + (l/h)^2/2 = {:.4g} times as stiff",
+                               out.locks_by);
+    }
   } else if (dimension == 2) {
     model.add("st_venant_kirchhoff_membrane", {{"E", {young}}, {"nu", {0.0}}, {"h", {form.height}}});
     // On equilateral triangles a free strip has the bending stiffness 6 k per width: an edge of length a with height h

@@ -22,7 +22,8 @@ struct Beam {
   Eigen::VectorXd length;    // m, share of each vertex in what is spread over the length
   CoupledMass::Matrix mass;  // kg, of 1 kg/m
   std::string element, mesh;
-  std::string limits;  // why this form does not reach references; empty where it does
+  std::string limits;   // why this form does not reach references; empty where it does
+  double locks_by = 1;  // how many times too stiff in bending, where that is known
 
   std::optional<double> bound() const { return limits.empty() ? std::optional(0.01) : std::nullopt; }
   Eigen::Vector3d tip_place() const { return model.x * tip; }
