@@ -34,7 +34,7 @@ void add_refused(const StepRecord& refused, StepRecord& record) {
   record.newton_iterations += refused.newton_iterations;
   add_counts(refused, record);
   record.seconds.total += refused.seconds.total;
-  record.refused = refused.refused + 1;
+  record.refused += refused.refused + 1;
 }
 
 }  // namespace ergon

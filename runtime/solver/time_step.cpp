@@ -43,7 +43,8 @@ TimeStepper::TimeStepper(System& system, Eigen::VectorXd mass, Contact* contact,
 }
 
 StepRecord TimeStepper::step(State& state) {
-  if (!options_.creates_no_energy) return step_by(integrator_for(state), state);
+  const bool watched = options_.creates_no_energy && integrator_named(options_.integrator).has_inertia;
+  if (!watched) return step_by(integrator_for(state), state);
   const State before = state;
   StepRecord record = step_by(integrator_for(state), state);
   if (record.accepted && record.integrator != damped && creates_energy(state, record)) {
