@@ -89,7 +89,7 @@ rest     V             m^3  (0, inf)   volume at rest
 param    K             Pa   (0, inf)   bulk modulus  # a name, its unit, its range, help
 let      J = det(columns(x1 - x0, x2 - x0, x3 - x0))/(6*V)
 value    K*V/2*(J - 1)^2
-# In a scene, of an object:  energy = [{ law = "NAME.energy", K = "1 MPa" }]
+# In a scene, of an object with element = "tet4":  energy = [{ law = "NAME.energy", K = "1 MPa" }]
 )"},
       {"hinge", "energy of two triangles that share an edge",
        R"(# Bending: resists the change of the angle between two triangles. (This line is the summary.)

@@ -64,13 +64,15 @@ std::string use_of(const std::string& text) {
 }
 
 std::string object(const std::string& name, const std::string& place, const std::string& energy) {
-  const bool sheet = place == "sheet", line = place == "curve";
+  const bool sheet = place == "sheet", line = place == "curve", tets = place == "tets";
   return "[[object]]\nname = \"" + name + "\"\ndensity = 1000\n" +
          (line    ? "curve = { points = [[0, 0, 0], [0.2, 0, 0.05], [0.3, 0.2, 0]], cells = 12 }\ncross_section = \"1 "
                     "cm^2\"\n"
           : sheet ? "box = { size = [0.2, 0.1, 0.1], cells = [6, 3, 1] }\nelement = \"tri3\"\nthickness = \"1 mm\"\n"
+          : tets  ? "box = { size = [0.1, 0.1, 0.1], cells = [2, 2, 2] }\nelement = \"tet4\"\n"
                   : "box = { size = [0.1, 0.1, 0.1], cells = [2, 2, 2] }\n") +
-         (line || sheet ? "" : "translate = " + place + "\n") + "fixed = [{ max = [0.04, inf, inf] }]\n" + energy;
+         (line || sheet || tets ? "" : "translate = " + place + "\n") + "fixed = [{ max = [0.04, inf, inf] }]\n" +
+         energy;
 }
 
 class SlowNewEnergy : public CommandTest, public testing::WithParamInterface<std::string> {};
@@ -84,7 +86,8 @@ TEST_P(SlowNewEnergy, WorksInASceneAsItsLastLineSays) {
     const std::string text = read("my_law.energy");
     const bool sheet = text.find("element = \"tri3\"") != std::string::npos;
     const bool line = text.find("an object that is a curve") != std::string::npos;
-    scene += object("a", sheet ? "sheet" : line ? "curve" : "[0, 0, 0]", use);
+    const bool tets = text.find("element = \"tet4\"") != std::string::npos;
+    scene += object("a", sheet ? "sheet" : line ? "curve" : tets ? "tets" : "[0, 0, 0]", use);
   } else {
     scene = use + scene + object("a", "[0, 0, 0]", rubber) + object("b", "[0, 0, 0.1005]", rubber);
   }
