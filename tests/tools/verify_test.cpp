@@ -80,5 +80,16 @@ TEST(VerifyRowTest, IsJudgedByItsBound) {
   EXPECT_FALSE(row.passed());
 }
 
+TEST(VerifyRowTest, TendsToWhatIsLeftWithoutErrorsInProportionToCells) {
+  const VerifyRow coarse{"length", "Tri3", "8", 2.2, 3, std::nullopt, "soft sides"};
+  const VerifyRow fine{"length", "Tri3", "16", 2.1, 3, std::nullopt, "soft sides"};
+  const VerifyRow limit = limit_of(coarse, fine, 2);
+  EXPECT_NEAR(limit.value, 2, 1e-12);
+  EXPECT_EQ(limit.reference, 2);
+  EXPECT_EQ(limit.quantity, "length, limit");
+  EXPECT_EQ(limit.mesh, "cells to 0");
+  EXPECT_TRUE(limit.judged() && limit.passed());
+}
+
 }  // namespace
 }  // namespace ergon

@@ -48,6 +48,8 @@ class Model {
   // The same of the normals of edges both of whose ends are among the vertices.
   void hold_normals(const std::vector<int>& vertices);
 
+  // x as it was at first.
+  void to_rest() { x = rest_; }
   // Moves x to equilibrium, such that Newton's last step is below `tolerance` (m). Throws std::runtime_error where that
   // fails.
   NewtonResult solve(double tolerance);

@@ -26,6 +26,10 @@ struct VerifyRow {
   bool passed() const { return !judged() || error() <= *bound; }  // not where the value is not a number
 };
 
+// What two rows tend to whose errors are in proportion to the size of cells, and cells of `fine` are half as long: a
+// row that is judged, against `reference`.
+VerifyRow limit_of(const VerifyRow& coarse, const VerifyRow& fine, double reference);
+
 // What a case is given to write to.
 class VerifyRows {
  public:
