@@ -164,6 +164,8 @@ void Potential::set_time(double time) {
   }
 }
 
+bool Potential::follows_time() const { return !impl->timed.empty(); }
+
 const std::string& Potential::name() const { return impl->name; }
 const ErgonKernel& Potential::kernel() const { return *impl->kernel.table; }
 int Potential::stencil_count() const { return impl->count; }

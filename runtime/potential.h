@@ -85,6 +85,7 @@ class Potential {
   // end of each stage.
   void follow(const std::string& name, TimedValues values);
   void set_time(double time);  // s
+  bool follows_time() const;
 
   // Of a density: F at every point of quadrature of every cell, column by column, in the axes of space.
   std::vector<double> deformation(const Eigen::Matrix3Xd& x) const;

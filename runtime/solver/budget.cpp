@@ -4,6 +4,8 @@
 // stored energy less the work of its gradient - is the integrator's: of implicit Euler, mass/2*|change of v|^2 and what
 // the stored energy is convex by. What then is left is the work of forces that Newton's method left unbalanced.
 
+#include <algorithm>
+
 #include "runtime/solver/lags.h"
 #include "runtime/solver/largest.h"
 #include "runtime/solver/time_step.h"
@@ -57,6 +59,41 @@ void TimeStepper::take_ways(const State& state, const Integrator& integrator, co
   }
 }
 
+// What stored energy gains while nothing moves, J: the step goes along the ways of its balances, each with what
+// potentials had at the balance's time, and between two of them time alone goes on. A method of second order that has
+// one balance, at the end, does half of the way before. `state`: after the step.
+double TimeStepper::work_of_time(const State& state, int order) {
+  std::vector<size_t> changing;
+  for (int i = 0; i < system_->potential_count(); ++i) {
+    const bool grows = std::any_of(loads_.begin(), loads_.end(), [&](const Load& load) { return load.potential == i; });
+    if (is_stored(i) && (grows || system_->potential(i).follows_time())) changing.push_back(static_cast<size_t>(i));
+  }
+  if (changing.empty()) return 0;
+  double now = state.time - options_.dt, work = 0;
+  Eigen::Matrix3Xd x = state.last_x;
+  const auto stored = [&](double time) {
+    set_time(time);
+    const PotentialValues values = system_->value(x).by_potential;
+    double sum = 0;
+    for (const size_t i : changing) sum += values[i];
+    return sum;
+  };
+  const auto go_on = [&](double time) {
+    if (time == now) return;
+    work += stored(time) - stored(now);
+    now = time;
+  };
+  const bool halved = order > 1 && balances_.size() == 1 && balances_[0].time == state.time;
+  if (halved) x += balances_[0].way / 2;
+  for (const Balance& part : balances_) {
+    go_on(part.time);
+    x += part.way;
+  }
+  go_on(state.time);
+  set_time(state.time);
+  return work;
+}
+
 // `state`: after the step; the state before is in it too.
 Budget TimeStepper::budget_of(const State& state, const StepRecord& record, const Evaluation& evaluation) {
   Budget out;
@@ -92,13 +129,7 @@ Budget TimeStepper::budget_of(const State& state, const StepRecord& record, cons
     const auto at = static_cast<size_t>(i);
     if (is_stored(i)) change += evaluation.by_potential[at] - known_.energy[at];
   }
-  if (!loads_.empty()) {
-    const PotentialValues before = system_->value(state.last_x).by_potential;
-    for (const Load& load : loads_) {
-      const auto at = static_cast<size_t>(load.potential);
-      out.loads += before[at] - known_.energy[at];
-    }
-  }
+  out.loads = work_of_time(state, integrator_named(record.integrator).order);
   out.barrier = record.energy_added;
   out.change = change + free_kinetic + held_kinetic;
   out.integrator = inertia_work - free_kinetic + stored_work - (change - out.barrier - out.loads);

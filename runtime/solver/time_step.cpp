@@ -77,6 +77,7 @@ StepRecord TimeStepper::step_by(const std::string& name, State& state) {
     if (known_.x.cols() == 0 || known_.x != state.x) energies(state);
     std::vector<Moment> moments = known_moments(state, integrator);
     balances_.assign(1, starting_balance(moments.back()));
+    balances_.back().time = state.time;
     const bool was_stable = integrator.has_inertia || is_stable(state);
     for (const Stage& stage : integrator.stages) {
       Eigen::Matrix3Xd x = moments.back().x;
@@ -86,9 +87,10 @@ StepRecord TimeStepper::step_by(const std::string& name, State& state) {
       if (!record.accepted) break;
       moments.push_back(moment_of(state, stage, moments, x));
       balance_.a = moments.back().a;
+      balance_.time = state.time + stage.time * options_.dt;
       balances_.push_back(balance_);
     }
-    record.accepted = record.accepted && finish(integrator, moments, result);
+    record.accepted = record.accepted && finish(integrator, state.time + options_.dt, moments, result);
     if (record.accepted && options_.estimate_error) record.error = local_error(state, integrator, moments);
     if (record.accepted) {
       take_ways(state, integrator, moments);
@@ -192,7 +194,8 @@ NewtonResult TimeStepper::solve_stage(const Solve& stage, const Eigen::Matrix3Xd
 }
 
 // The last combination of an integrator that has one, if contact and the potentials' domains let it be.
-bool TimeStepper::finish(const Integrator& integrator, std::vector<Moment>& moments, NewtonResult& result) {
+bool TimeStepper::finish(const Integrator& integrator, double end_time, std::vector<Moment>& moments,
+                         NewtonResult& result) {
   if (integrator.end_x.empty()) return true;
   const double dt = options_.dt;
   Moment end{position(integrator.end_x, moments, dt), velocity(integrator.end_v, moments, dt),
@@ -203,6 +206,7 @@ bool TimeStepper::finish(const Integrator& integrator, std::vector<Moment>& mome
   const Eigen::Matrix3Xd way = end.x - moments.back().x;
   const bool blocked = contact_ && contact_->largest_step(moments.back().x, way) < 1;
   if (contact_) contact_->set_active(blocked ? moments.back().x : end.x);
+  set_time(end_time);
   if (!blocked) result.evaluation = system_->value(end.x);
   const Violation worst = constraints_.violation(*system_, end.x);
   if (blocked || !(result.evaluation.require > 0) || worst.excess > 1) {
@@ -229,12 +233,17 @@ void TimeStepper::lag_dt(int i, double dt) {
   lagged = dt;
 }
 
+// Of what potentials follow.
+void TimeStepper::set_time(double time) {
+  if (load_end_ > 0) set_loads(load_factor(time));
+  for (int i = 0; i < system_->potential_count(); ++i) system_->potential(i).set_time(time);
+}
+
 void TimeStepper::set_lags(const Solve& stage) {
-  if (load_end_ > 0) set_loads(load_factor(stage.end));
+  set_time(stage.end);
   lagged_dt_.resize(static_cast<size_t>(system_->potential_count()), 0);
   for (int i = 0; i < system_->potential_count(); ++i) {
     Potential& potential = system_->potential(i);
-    potential.set_time(stage.end);
     if (contact_ && contact_->owns(i)) continue;
     lag_dt(i, has_vector_lag(potential, "hat") ? stage.dt : renews(potential) ? stage.since : stage.lag_dt);
     if (potential.kernel().density && has_lag(potential.kernel(), "Flag"))

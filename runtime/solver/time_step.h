@@ -91,7 +91,7 @@ struct Energies {
 struct Budget {
   double change = 0;
   double script = 0;      // work of what holds and moves scripted vertices
-  double loads = 0;       // by loads that grow
+  double loads = 0;       // by loads that grow, and by what else potentials have that follows time
   double barrier = 0;     // by changes of barrier stiffness, and of constraints that are shifted and hardened
   double friction = 0;    // dissipated
   double damping = 0;     // dissipated by potentials with the lag dt, and in proportion to stiffness
@@ -183,6 +183,7 @@ class TimeStepper {
   // step's displacement (m) that was made with them.
   struct Balance {
     Eigen::Matrix3Xd stored, friction, damping, a, way;
+    double time = 0;  // s, that potentials which follow it had then
   };
   std::string integrator_for(const State& state);
   StepRecord step_by(const std::string& integrator, State& state);
@@ -192,9 +193,11 @@ class TimeStepper {
   Moment moment_of(const State& state, const Stage& stage, const std::vector<Moment>& moments,
                    const Eigen::Matrix3Xd& x) const;
   NewtonResult solve_stage(const Solve& stage, const Eigen::Matrix3Xd& v, Eigen::Matrix3Xd& x, StepRecord& record);
-  bool finish(const Integrator& integrator, std::vector<Moment>& moments, NewtonResult& result);
+  bool finish(const Integrator& integrator, double end_time, std::vector<Moment>& moments, NewtonResult& result);
   void prepare_at(const State& state);
   void set_loads(double factor);
+  void set_time(double time);
+  double work_of_time(const State& state, int order);
   bool is_stable(const State& state);
   void take_balance(const Eigen::Matrix3Xd& x);
   Balance starting_balance(const Moment& start) const;

@@ -39,6 +39,49 @@ TEST(Budget, OfAnOscillatorIsTheIntegratorsAlone) {
   }
 }
 
+// A force that varies in time works: what it gives is nobody's dissipation. Of a free point implicit Euler dissipates
+// m/2*|change of v|^2, newmark nothing, and of second order what is left falls with the square of dt.
+TEST(Budget, OfAForceThatFollowsTimeIsItsWork) {
+  const double m = 0.5, end = 1;
+  const auto run = [&](const std::string& integrator, double dt) {
+    BodyScene scene = point_scene(Vector3d::Zero(), Vector3d(0.3, 0, 0), Vector3d::Zero(), m);
+    scene.system.potential(1).follow("g", [](double time) {
+      return std::vector<double>{4 * std::sin(3 * time), 0, 0};
+    });
+    scene.start({.dt = dt, .integrator = integrator, .tolerance = 1e-12});
+    double work = 0, integrators = 0, change = 0;
+    while (scene.state.time < end - dt / 2) {
+      const StepRecord record = scene.step();
+      EXPECT_NEAR(record.budget.residual, 0, 1e-12) << integrator;
+      EXPECT_NEAR(record.budget.change, record.budget.loads - record.budget.integrator, 1e-12) << integrator;
+      const Vector3d dv = scene.state.v.col(0) - scene.state.last_v.col(0);
+      if (integrator == "implicit_euler" || integrator == "newmark") {
+        const double part = integrator == "newmark" ? 0 : m / 2;
+        EXPECT_NEAR(record.budget.integrator, part * dv.squaredNorm(), 1e-12) << integrator;
+      }
+      work += record.budget.loads;
+      integrators += record.budget.integrator;
+      change += record.budget.change;
+    }
+    EXPECT_NEAR(change, work - integrators, 1e-12);
+    return std::pair(work, integrators);
+  };
+  // The point goes along x(t) = (0.3 + 4/3) t - 4/9 sin(3 t); minus the integral of dg/dt m x.
+  double exact = 0;
+  for (int i = 0; i < 100000; ++i) {
+    const double t = (i + 0.5) * 1e-5;
+    exact -= m * 12 * std::cos(3 * t) * ((0.3 + 4. / 3) * t - 4. / 9 * std::sin(3 * t)) * 1e-5;
+  }
+  run("implicit_euler", 0.01);
+  for (const std::string integrator : {"bdf2", "tr_bdf2", "sdirk2", "midpoint", "newmark"}) {
+    const auto [work, integrators] = run(integrator, 0.01);
+    const auto [finer_work, finer_integrators] = run(integrator, 0.005);
+    EXPECT_NEAR(work, exact, 1e-3 * std::fabs(exact)) << integrator;
+    EXPECT_GT(std::fabs(work - exact), 3.5 * std::fabs(finer_work - exact)) << integrator;
+    EXPECT_LT(std::fabs(finer_integrators), std::fabs(integrators) / 3 + 1e-12) << integrator;
+  }
+}
+
 // Friction takes mu*m*g times the way that a point slides; the ground and its weight balance.
 TEST(Budget, OfASlidingPointIsThatOfCoulomb) {
   const double mu = 0.3, m = 2;

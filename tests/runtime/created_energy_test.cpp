@@ -73,6 +73,17 @@ TEST(CreatedEnergy, LeavesSmoothMotionsAlone) {
   EXPECT_EQ(swing(true).x, swing(false).x);
 }
 
+// Nor is one whose force swells and ebbs: that it takes back what it gave is not the integrator's.
+TEST(CreatedEnergy, LeavesForcesThatFollowTimeAlone) {
+  BodyScene scene = cube_scene(0.1, 1, 1, 1e3, Vector3d::Zero());
+  scene.system.potential(1).follow("g", [](double time) {
+    return std::vector<double>{0, 50 * std::sin(10 * time) * std::sin(10 * time), 0};
+  });
+  scene.system.set_fixed({1, 1, 1, 1, 0, 0, 0, 0});
+  scene.start({.dt = 2e-3, .integrator = "bdf2", .tolerance = 1e-8, .creates_no_energy = true});
+  for (int i = 0; i < 300; ++i) EXPECT_EQ(scene.step().refused, 0) << i;
+}
+
 // Of a step that is made anew, nothing remains but what it cost.
 TEST(CreatedEnergy, AStepMadeAnewIsThatOfImplicitEuler) {
   BodyScene scene = cube_scene(0.1, 0.3, 1, 1e4, Vector3d(0, -9.81, 0));
