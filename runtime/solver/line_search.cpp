@@ -1,5 +1,6 @@
 #include "runtime/solver/line_search.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -41,26 +42,29 @@ std::string unusable(const Evaluation& evaluation) {
 
 Rounding measure_rounding(System& system, const Eigen::Matrix3Xd& x, const Evaluation& at_x,
                           const Eigen::Matrix3Xd& gradient) {
-  Eigen::Matrix3Xd moved = x;
+  constexpr int samples = 4;  // one alone may fall where errors happen to cancel
+  Rounding rounding;
   std::uint32_t random = 1;
-  for (int v = 0; v < system.vertices(); ++v) {
-    if (system.block_of(v) < 0) continue;
-    for (int c = 0; c < 3; ++c) {
-      random = 1664525 * random + 1013904223;  // Numerical Recipes' generator: which way to move
-      moved(c, v) *= 1 + (random >> 31 ? 4 : -4) * std::numeric_limits<double>::epsilon();
+  for (int sample = 0; sample < samples; ++sample) {
+    Eigen::Matrix3Xd moved = x;
+    for (int v = 0; v < system.vertices(); ++v) {
+      if (system.block_of(v) < 0) continue;
+      for (int c = 0; c < 3; ++c) {
+        random = 1664525 * random + 1013904223;  // Numerical Recipes' generator: which way to move
+        moved(c, v) *= 1 + (random >> 31 ? 4 : -4) * std::numeric_limits<double>::epsilon();
+      }
+    }
+    system.carriers().place(moved);
+    Eigen::Matrix3Xd moved_gradient(3, x.cols());
+    const double error = system.value(moved).value - at_x.value - free_dot(system, gradient, moved - x);
+    system.gradient(moved, moved_gradient);
+    rounding.energy = std::max(rounding.energy, 8 * std::abs(error));
+    for (int v = 0; v < system.vertices(); ++v) {
+      if (system.block_of(v) < 0) continue;
+      rounding.gradient = std::max(rounding.gradient, (moved_gradient.col(v) - gradient.col(v)).cwiseAbs().maxCoeff());
     }
   }
-  system.carriers().place(moved);
-  Eigen::Matrix3Xd moved_gradient(3, x.cols());
-  const double moved_value = system.value(moved).value;
-  system.gradient(moved, moved_gradient);
-  Rounding rounding;
-  rounding.energy = 8 * std::abs(moved_value - at_x.value - free_dot(system, gradient, moved - x)) +
-                    8 * std::numeric_limits<double>::epsilon() * magnitude_of(at_x);
-  for (int v = 0; v < system.vertices(); ++v) {
-    if (system.block_of(v) < 0) continue;
-    rounding.gradient = std::max(rounding.gradient, (moved_gradient.col(v) - gradient.col(v)).cwiseAbs().maxCoeff());
-  }
+  rounding.energy += 8 * std::numeric_limits<double>::epsilon() * magnitude_of(at_x);
   return rounding;
 }
 
