@@ -60,8 +60,8 @@ void TimeStepper::take_ways(const State& state, const Integrator& integrator, co
 }
 
 // What stored energy gains while nothing moves, J: the step goes along the ways of its balances, each with what
-// potentials had at the balance's time, and between two of them time alone goes on. A method of second order that has
-// one balance, at the end, does half of the way before. `state`: after the step.
+// potentials had at the balance's time, and between two of them time alone goes on. Of second order where a method has
+// one balance, neither at the start nor amid the step, is to let time go on amid the way. `state`: after the step.
 double TimeStepper::work_of_time(const State& state, int order) {
   std::vector<size_t> changing;
   for (int i = 0; i < system_->potential_count(); ++i) {
@@ -83,11 +83,14 @@ double TimeStepper::work_of_time(const State& state, int order) {
     work += stored(time) - stored(now);
     now = time;
   };
-  const bool halved = order > 1 && balances_.size() == 1 && balances_[0].time == state.time;
-  if (halved) x += balances_[0].way / 2;
-  for (const Balance& part : balances_) {
-    go_on(part.time);
-    x += part.way;
+  const double amid = state.time - options_.dt / 2;
+  if (order > 1 && balances_.size() == 1 && std::abs(balances_[0].time - amid) > 1e-9 * options_.dt) {
+    x += balances_[0].way / 2;
+  } else {
+    for (const Balance& part : balances_) {
+      go_on(part.time);
+      x += part.way;
+    }
   }
   go_on(state.time);
   set_time(state.time);

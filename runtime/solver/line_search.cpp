@@ -42,7 +42,7 @@ std::string unusable(const Evaluation& evaluation) {
 
 Rounding measure_rounding(System& system, const Eigen::Matrix3Xd& x, const Evaluation& at_x,
                           const Eigen::Matrix3Xd& gradient) {
-  constexpr int samples = 4;  // one alone may fall where errors happen to cancel
+  constexpr int samples = 4;  // of the energy, which is one number: one alone may fall where its errors cancel
   Rounding rounding;
   std::uint32_t random = 1;
   for (int sample = 0; sample < samples; ++sample) {
@@ -55,10 +55,11 @@ Rounding measure_rounding(System& system, const Eigen::Matrix3Xd& x, const Evalu
       }
     }
     system.carriers().place(moved);
-    Eigen::Matrix3Xd moved_gradient(3, x.cols());
     const double error = system.value(moved).value - at_x.value - free_dot(system, gradient, moved - x);
-    system.gradient(moved, moved_gradient);
     rounding.energy = std::max(rounding.energy, 8 * std::abs(error));
+    if (sample > 0) continue;
+    Eigen::Matrix3Xd moved_gradient(3, x.cols());
+    system.gradient(moved, moved_gradient);
     for (int v = 0; v < system.vertices(); ++v) {
       if (system.block_of(v) < 0) continue;
       rounding.gradient = std::max(rounding.gradient, (moved_gradient.col(v) - gradient.col(v)).cwiseAbs().maxCoeff());

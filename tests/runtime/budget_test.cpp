@@ -73,7 +73,7 @@ TEST(Budget, OfAForceThatFollowsTimeIsItsWork) {
     exact -= m * 12 * std::cos(3 * t) * ((0.3 + 4. / 3) * t - 4. / 9 * std::sin(3 * t)) * 1e-5;
   }
   run("implicit_euler", 0.01);
-  for (const std::string integrator : {"bdf2", "tr_bdf2", "sdirk2", "midpoint", "newmark"}) {
+  for (const std::string integrator : {"bdf2", "tr_bdf2", "sdirk2", "midpoint", "newmark", "generalised_alpha"}) {
     const auto [work, integrators] = run(integrator, 0.01);
     const auto [finer_work, finer_integrators] = run(integrator, 0.005);
     EXPECT_NEAR(work, exact, 1e-3 * std::fabs(exact)) << integrator;

@@ -49,18 +49,17 @@ void add_solid(const BeamForm& form, double young, Beam& out) {
       fmt::format("locks in bending: it shears, which makes it 1 + (l/h)^2/2 = {:.4g} times as stiff", out.stiffness);
 }
 
-// Curvatures c, where the vertices lie on z = (c_xx x^2 + 2 c_xy x y + c_yy y^2)/2, turn an edge with the direction t
-// and triangles of the height h on both sides by what their planes rise towards their third corners. Of what all edges
-// have per area, with the weights of Discrete Shells:
-//   - equilateral, a = 2 h/sqrt(3): h (c_nn - c_tt/3), as an edge's ends lie above its middle: 3 k (c_xx^2 + c_yy^2 -
-//   2/3
-//     c_xx c_yy + 8/3 c_xy^2), an isotropic plate with a Poisson's ratio of -1/3, whose free strip is 8/9 as stiff as a
-//     wide one;
-//   - parallel diagonals: 3 k ((c_xx + c_xy)^2 + (c_yy + c_xy)^2 + 4 c_xy^2), whose least value for a given c_xx, which
-//     twists, is 0.8 times 3 k c_xx^2;
-//   - diagonals that turn: every other vertex moves off the surface by d a^2/2, (c_xx + d)^2 + (c_yy + d)^2 + 4 c_xy^2
-//   +
-//     4 d^2 times 3 k with the least d: 5/6 of c_xx^2 + c_yy^2 - 2/5 c_xx c_yy and 4 c_xy^2: 0.8 again.
+// Vertices on z = (c_xx x^2 + 2 c_xy x y + c_yy y^2)/2 turn an edge along t, with triangles of the height h on both
+// sides, by what their planes rise towards their third corners. All edges have, per area and with the weights of
+// Discrete Shells,
+//   - equilateral, where they turn by h (c_nn - c_tt/3), as an edge's ends lie above its middle:
+//     3 k (c_xx^2 + c_yy^2 - 2/3 c_xx c_yy + 8/3 c_xy^2), an isotropic plate with a Poisson's ratio of -1/3, whose free
+//     strip is 8/9 as stiff as a wide one;
+//   - with parallel diagonals: 3 k ((c_xx + c_xy)^2 + (c_yy + c_xy)^2 + 4 c_xy^2), whose least value for a given c_xx,
+//     which twists, is 0.8 times 3 k c_xx^2;
+//   - with diagonals that turn, where every other vertex leaves the surface by d a^2/2:
+//     3 k ((c_xx + d)^2 + (c_yy + d)^2 + 4 c_xy^2 + 4 d^2) with the least d, so 5/6 of 3 k (c_xx^2 + c_yy^2 - 2/5 c_xx
+//     c_yy) and 12 k c_xy^2: 0.8 again.
 void add_sheet(const BeamForm& form, double young, double width, Beam& out) {
   Model& model = out.model;
   model.add("st_venant_kirchhoff_membrane", {{"E", {young}}, {"nu", {0.0}}, {"h", {form.height}}});
